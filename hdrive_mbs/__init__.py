@@ -1,0 +1,1 @@
+"""Harmonic-drive power trains on Exudyn."""

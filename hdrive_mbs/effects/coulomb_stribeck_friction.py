@@ -1,0 +1,41 @@
+"""Coulomb and Stribeck friction on a body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hdrive_mbs.effects.effect import TorqueEffect
+from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.expression import Value
+from hdrive_mbs.quantities import parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class CoulombStribeckFriction(TorqueEffect):
+    """Dry friction with a Stribeck drop, smooth through zero speed.
+
+    tau = -tanh(w / w_0) [T_C + (T_S - T_C) exp(-(w / w_S)^2)]
+
+    Source: Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, with sign(w)
+    regularised by tanh.  Leaves out true sticking: below w_0 the body creeps (LuGreFriction holds).
+    """
+
+    coulomb: float = parameter("N m", "sliding torque T_C", low=0.0)
+    breakaway: float | None = parameter("N m", "breakaway torque T_S (coulomb if not given)", default=None, low=0.0)
+    stribeck_speed: float = parameter("rad/s", "speed w_S at which the drop has faded", default=1.0, above=0.0)
+    smoothing_speed: float = parameter("rad/s", "speed w_0 of the smooth step through zero", default=0.01, above=0.0)
+
+    dissipative: ClassVar[bool] = True
+    signature: ClassVar[str] = "constant torque offset that changes sign with the direction of rotation"
+
+    def check(self) -> None:
+        if self.breakaway is not None and self.breakaway < self.coulomb:
+            raise ParameterError(f"CoulombStribeckFriction.breakaway = {self.breakaway:g} N m is below coulomb = {self.coulomb:g} N m.")
+
+    def torque(self, time: Value, angle: Value, speed: Value) -> Value:
+        drop = 0.0 if self.breakaway is None else self.breakaway - self.coulomb
+        size = self.coulomb + drop * np.exp(-((speed / self.stribeck_speed) ** 2))
+        return -np.tanh(speed / self.smoothing_speed) * size

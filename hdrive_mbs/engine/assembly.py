@@ -1,0 +1,256 @@
+"""Network -> Exudyn system of Node1D/Mass1D, coordinate spring-dampers and generic couplings.
+
+A first-order state z is the *velocity* of a unit-mass coordinate: 1 * dz/dt = rate.  It is exact in
+every integrator, needs no Python callback and no GenericODE1; the coordinate itself (the integral
+of z) touches nothing.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import exudyn as exu
+from exudyn import itemInterface as item  # noqa: N813
+import numpy as np
+
+from hdrive_mbs.engine.guard import check_connector, check_coupling
+from hdrive_mbs.engine.records import CoupledRecord, ScalarRecord, make_record
+from hdrive_mbs.engine.symbolic import SYMBOLIC_VECTOR_LIMIT, connector_function, generic_function
+from hdrive_mbs.expression import Expression, variables
+from hdrive_mbs.expression_code import scalar_function
+from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.network import Network
+
+PLAIN = "ObjectConnectorCoordinateSpringDamper"
+GEARED = "ObjectConnectorCoordinateSpringDamperExt"
+
+
+class LoweringWarning(UserWarning):
+    """A law runs as a Python callback in the solver's loop and slows it down."""
+
+
+@dataclass(frozen=True)
+class Lowered:
+    """How one law entered the engine: 'native', 'symbolic' or 'python', and why not better."""
+
+    element: str
+    how: str
+    reason: str = ""
+
+
+@dataclass
+class Assembly:
+    """An Exudyn system made from a network, ready to be solved many times."""
+
+    network: Network
+    mbs: Any
+    container: Any
+    bodies: tuple[str, ...]
+    states: tuple[str, ...]
+    sensors: dict[str, tuple[Any, Any]]
+    lowered: list[Lowered] = field(default_factory=list)
+    kept: list[Any] = field(default_factory=list)
+
+    def set_initial(self, angles: Mapping[str, float], speeds: Mapping[str, float], states: Mapping[str, float]) -> None:
+        """Initial forward angles and speeds of the bodies and values of the states."""
+        q = [angles.get(name, 0.0) for name in self.bodies] + [0.0] * len(self.states)
+        v = [speeds.get(name, 0.0) for name in self.bodies]
+        v += [states.get(state.name, state.initial) for state in self.network.states]
+        self.mbs.systemData.SetODE2Coordinates(q, exu.ConfigurationType.Initial)
+        self.mbs.systemData.SetODE2Coordinates_t(v, exu.ConfigurationType.Initial)
+
+
+def assemble(network: Network, *, lowering: str = "symbolic", guard: bool = True) -> Assembly:
+    """Build the Exudyn system.
+
+    lowering : "symbolic" (default) or "python" (every law as a compiled Python callback: for
+        comparison only)
+    guard : compare every lowered law with the plain function at random points
+
+    Warns LoweringWarning for a law that had to stay a Python callback; raises LawError when a
+    lowered law differs from the plain one.
+    """
+    builder = _Builder(network, lowering, guard)
+    for element in network.elements:
+        record = make_record(element, network)
+        if isinstance(record, ScalarRecord):
+            builder.add_scalar(record)
+        else:
+            builder.add_coupled(record)
+    return builder.finish()
+
+
+class _Builder:
+    def __init__(self, network: Network, lowering: str, guard: bool) -> None:
+        self.network, self.python, self.guard = network, lowering == "python", guard
+        self.container = exu.SystemContainer()
+        self.mbs = self.container.AddSystem()
+        self.lowered: list[Lowered] = []
+        self.kept: list[Any] = []
+        self.nodes: dict[str, Any] = {}
+        self.markers: dict[str, Any] = {}
+        for body in network.bodies:
+            self._add_node(body.name, body.inertia)
+        for state in network.states:
+            self._add_node(state.name, 1.0)
+        ground = self.mbs.AddNode(item.NodePointGround())
+        self.ground = self.mbs.AddMarker(item.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
+
+    def _add_node(self, name: str, mass: float) -> None:
+        node = self.mbs.AddNode(item.Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[0.0]))
+        self.mbs.AddObject(item.Mass1D(nodeNumber=node, mass=mass))
+        self.nodes[name] = node
+        self.markers[name] = self.mbs.AddMarker(item.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
+
+    # -- one displacement --------------------------------------------------------------------------
+    def add_scalar(self, record: ScalarRecord) -> None:
+        (last, factor), *rest = reversed(list(record.factors.items()))
+        first, other = (rest[0][0], rest[0][1]) if rest else ("ground", 0.0)
+        markers = [self.markers[first] if rest else self.ground, self.markers[last]]
+        unit = factor == 1.0 and (not rest or other == -1.0)
+        geared: dict[str, Any] = {} if unit else {"factor0": -other, "factor1": factor}
+        kind = PLAIN if unit else GEARED
+        make = item.CoordinateSpringDamper if unit else item.CoordinateSpringDamperExt
+        linear = record.linear()
+        if linear is not None:
+            stiffness, damping = linear
+            if linear != (0.0, 0.0):
+                self.mbs.AddObject(make(markerNumbers=markers, stiffness=stiffness, damping=damping, **geared))
+            self.lowered.append(Lowered(record.name, "native"))
+            return
+        function, how = self._connector_function(record, kind)
+        self.mbs.AddObject(make(markerNumbers=markers, springForceUserFunction=function, **geared))
+        self.lowered.append(Lowered(record.name, how, record.reason))
+
+    def _connector_function(self, record: ScalarRecord, kind: str) -> tuple[Any, str]:
+        if record.expression is None:
+            self._warn(record.name, record.reason)
+            plain = record.plain
+            return (lambda mbs, t, i, x, v, *_: float(plain(t, x, v))), "python"
+        if self.python:
+            compiled = scalar_function([record.expression], ["t", "x", "v"])
+            return (lambda mbs, t, i, x, v, *_: compiled(t, x, v)[0]), "python"
+        function = connector_function(self.mbs, kind, record.expression)
+        self.kept.append(function)
+        if self.guard:
+            check_connector(self.mbs, function, kind, record)
+        return function, "symbolic"
+
+    # -- several coordinates -------------------------------------------------------------------------
+    def add_coupled(self, record: CoupledRecord) -> None:
+        if record.outputs is None:
+            self._warn(record.name, record.reason)
+            self._add_plain(record)
+            return
+        outputs = {name: item_ for name, item_ in record.outputs.items() if not _is_zero(item_)}
+        groups = [tuple(outputs)] if self._size(outputs) <= SYMBOLIC_VECTOR_LIMIT else [(name,) for name in outputs]
+        how = "symbolic"
+        for group in groups:
+            part = {name: outputs[name] for name in group}
+            if self._size(part) > SYMBOLIC_VECTOR_LIMIT or self.python:
+                how = "python"
+                if not self.python:
+                    self._warn(record.name, f"it couples {self._size(part)} coordinates, more than {SYMBOLIC_VECTOR_LIMIT}")
+            self._add_generic(record, part, how)
+        self.lowered.append(Lowered(record.name, how))
+
+    def _names(self, outputs: Mapping[str, Expression]) -> tuple[str, ...]:
+        seen = dict.fromkeys(outputs)
+        for name in sorted(variables(*outputs.values())):
+            if name != "t":
+                seen[name.partition(":")[2]] = None
+        return tuple(seen)
+
+    def _size(self, outputs: Mapping[str, Expression]) -> int:
+        return len(self._names(outputs))
+
+    def _add_generic(self, record: CoupledRecord, outputs: Mapping[str, Expression], how: str) -> None:
+        names = self._names(outputs)
+        states = {state.name for state in self.network.states}
+        positions = ["" if name in states else f"angle:{name}" for name in names]
+        velocities = [f"state:{name}" if name in states else f"speed:{name}" for name in names]
+        rows = [outputs.get(name, Expression("constant", (), 0.0)) for name in names]
+        if how == "symbolic":
+            function = generic_function(self.mbs, rows, positions, velocities)
+            self.kept.append(function)
+            if self.guard:
+                check_coupling(self.mbs, function, record, names, states, outputs)
+        else:
+            used = [name for name in [*positions, *velocities] if name]
+            compiled = scalar_function(rows, ["t", *used])
+            at = [k for k, name in enumerate(positions) if name]
+
+            def function(mbs: Any, t: float, i: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
+                return list(compiled(t, *(q[k] for k in at), *q_t))
+
+        self._add_object(names, function)
+
+    def _add_plain(self, record: CoupledRecord) -> None:
+        names = tuple(dict.fromkeys([*record.targets, *record.depends]))
+        states = {state.name for state in self.network.states}
+        plain: Callable[[Moment], dict[str, Any]] = record.plain
+
+        def function(mbs: Any, t: float, i: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
+            speeds = dict(zip(names, map(float, q_t), strict=True))
+            moment = Moment(
+                time=t,
+                angles=dict(zip(names, map(float, q), strict=True)),
+                speeds=speeds,
+                states={name: speeds[name] for name in names if name in states},
+            )
+            result = plain(moment)
+            return [float(result.get(name, 0.0)) for name in names]
+
+        self._add_object(names, function)
+        self.lowered.append(Lowered(record.name, "python", record.reason))
+
+    def _add_object(self, names: Sequence[str], function: Any) -> None:
+        n = len(names)
+        zero = np.zeros((n, n))
+        self.kept.append(function)
+        self.mbs.AddObject(
+            item.ObjectGenericODE2(
+                nodeNumbers=[self.nodes[name] for name in names],
+                massMatrix=zero,
+                stiffnessMatrix=zero,
+                dampingMatrix=zero,
+                forceVector=[0.0] * n,
+                forceUserFunction=function,
+            )
+        )
+
+    # -- the end -------------------------------------------------------------------------------------
+    def _warn(self, name: str, reason: str) -> None:
+        warnings.warn(
+            f"{name}: the law runs as a Python callback, several times slower than a symbolic one, because {reason}.",
+            LoweringWarning,
+            stacklevel=5,
+        )
+
+    def finish(self) -> Assembly:
+        kinds = (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
+        sensors = {
+            name: tuple(
+                self.mbs.AddSensor(item.SensorNode(nodeNumber=node, outputVariableType=kind, storeInternal=True, writeToFile=False))
+                for kind in kinds
+            )
+            for name, node in self.nodes.items()
+        }
+        self.mbs.Assemble()
+        return Assembly(
+            network=self.network,
+            mbs=self.mbs,
+            container=self.container,
+            bodies=tuple(body.name for body in self.network.bodies),
+            states=tuple(state.name for state in self.network.states),
+            sensors=sensors,
+            lowered=self.lowered,
+            kept=self.kept,
+        )
+
+
+def _is_zero(expression: Expression) -> bool:
+    return expression.operation == "constant" and expression.data == 0.0

@@ -1,0 +1,187 @@
+"""Elements of a network as records: expressions where the law can be recorded, else plain calls."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from hdrive_mbs.expression import Expression, TraceError, Value, derivative, evaluate, record, variable, variables
+from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, StateRate
+from hdrive_mbs.network.moment import Moment, recording_moment
+from hdrive_mbs.network.network import Network
+
+ScalarLaw = Callable[[Value, Value, Value], Value]
+
+
+@dataclass(frozen=True)
+class ScalarRecord:
+    """A torque along one linear combination of coordinates: f(t, x, v) with x = sum(f_i q_i).
+
+    expression : over ``t``, ``x``, ``v``; None where the law could not be recorded
+    plain : the law itself, for the guard and as the fallback
+    """
+
+    name: str
+    factors: Mapping[str, float]
+    expression: Expression | None
+    plain: ScalarLaw
+    reason: str = ""
+
+    def linear(self) -> tuple[float, float] | None:
+        """(stiffness, damping) where the law is exactly k x + d v, else None."""
+        if self.expression is None or "t" in variables(self.expression):
+            return None
+        k, d = (derivative(self.expression, name) for name in "xv")
+        if variables(k, d):
+            return None
+        offset = evaluate(self.expression, {"x": 0.0, "v": 0.0})
+        probe = evaluate(self.expression, {"x": 3.0, "v": -7.0})
+        if offset != 0.0 or not np.isclose(probe, 3.0 * k.data - 7.0 * d.data, rtol=1e-12, atol=0.0):
+            return None
+        return float(k.data), float(d.data)
+
+
+@dataclass(frozen=True)
+class CoupledRecord:
+    """Torques and state rates that depend on several coordinates.
+
+    outputs : target -> expression over ``t``, ``angle:*``, ``speed:*``, ``state:*``; None if not recorded
+    depends : coordinates and states that the law looks at
+    """
+
+    name: str
+    targets: tuple[str, ...]
+    outputs: Mapping[str, Expression] | None
+    depends: tuple[str, ...]
+    plain: Callable[[Moment], dict[str, Value]]
+    reason: str = ""
+
+
+class _Looked(Mapping[str, float]):
+    """A mapping of small numbers that remembers which names a law looked at."""
+
+    def __init__(self, seen: dict[str, None]) -> None:
+        self._seen = seen
+
+    def __getitem__(self, name: str) -> float:
+        self._seen[name] = None
+        return 1e-3
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._seen)
+
+    def __len__(self) -> int:
+        return len(self._seen)
+
+
+def _looked_at(function: Callable[[Moment], Any]) -> tuple[str, ...]:
+    seen: dict[str, None] = {}
+    looked = _Looked(seen)
+    function(Moment(time=1e-3, angles=looked, speeds=looked, states=looked))
+    return tuple(seen)
+
+
+def make_record(element: Element, network: Network) -> ScalarRecord | CoupledRecord:
+    """The simplest record of an element: scalar if its law allows, else coupled."""
+    scalar = _scalar(element, network)
+    return scalar if scalar is not None else _coupled(element, network)
+
+
+def _scalar_form(element: Element) -> tuple[dict[str, float], Callable[[Moment, Value, Value], Value]] | None:
+    """Factors and f(moment, x, v) that resists, where x is a linear combination of coordinates."""
+    if isinstance(element, Connection):
+        return None if element.terms else (dict(element.factors), element.torque)
+    if isinstance(element, AppliedTorque):
+        c = element.coordinate
+        return {c: 1.0}, lambda m, x, v: -element.torque(_overlay(m, c, x, v))
+    if isinstance(element, StateRate):
+        s = element.state
+        return {s: 1.0}, lambda m, x, v: -element.rate(Moment(time=m.time, angles=m.angles, speeds=m.speeds, states=_Over(m.states, s, v)))
+    return None
+
+
+class _Over(Mapping[str, Value]):
+    def __init__(self, base: Mapping[str, Value], name: str, value: Value) -> None:
+        self._base, self._name, self._value = base, name, value
+
+    def __getitem__(self, name: str) -> Value:
+        return self._value if name == self._name else self._base[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._base)
+
+    def __len__(self) -> int:
+        return len(self._base)
+
+
+def _overlay(m: Moment, name: str, x: Value, v: Value) -> Moment:
+    return Moment(time=m.time, angles=_Over(m.angles, name, x), speeds=_Over(m.speeds, name, v), states=m.states)
+
+
+def _scalar(element: Element, network: Network) -> ScalarRecord | None:
+    form = _scalar_form(element)
+    if form is None:
+        return None
+    factors, law = form
+    prescribed = {motion.name: motion for motion in network.motions}
+    moving = {name: f for name, f in factors.items() if name not in prescribed and f != 0.0}
+    driven = [(f, prescribed[name]) for name, f in factors.items() if name in prescribed and name != "ground"]
+    if len(moving) > 2 or not moving:
+        return None
+
+    def plain(t: Value, x: Value, v: Value) -> Value:
+        shift = sum(f * motion.angle(t) for f, motion in driven)
+        drift = sum(f * motion.speed(t) for f, motion in driven)
+        return law(Moment(time=t, angles={}, speeds={}, states={}), x + shift, v + drift)
+
+    reason = ""
+    expression: Expression | None = None
+    try:
+        symbols = recording_moment()
+        traced = record(law(symbols, variable("x"), variable("v")))
+        if not variables(traced) <= {"t", "x", "v"}:
+            return None
+        t = variable("t")
+        x: Value = variable("x") + sum(f * motion.angle(t) for f, motion in driven)
+        v: Value = variable("v") + sum(f * motion.speed(t) for f, motion in driven)
+        expression = record(evaluate(traced, {"t": t, "x": x, "v": v}))
+    except TraceError as error:
+        reason = str(error)
+        if _looked_at(lambda m: law(m, 1e-3, 1e-3)):
+            return None
+    return ScalarRecord(element.name, moving, expression, plain, reason)
+
+
+def _coupled(element: Element, network: Network) -> CoupledRecord:
+    prescribed = {motion.name: motion for motion in network.motions}
+    kept = {body.name for body in network.bodies} | {state.name for state in network.states}
+
+    def plain(moment: Moment) -> dict[str, Value]:
+        full = network.moment(moment.time, moment.angles, moment.speeds, moment.states)
+        return {name: value for name, value in element.contribution(full).items() if name in kept}
+
+    try:
+        symbols = recording_moment()
+        raw = element.contribution(symbols)
+        time = symbols.time
+        given: dict[str, Value] = {}
+        traced = {name: record(value) for name, value in raw.items() if name in kept}
+        for name in variables(*traced.values()):
+            kind, _, owner = name.partition(":")
+            motion = prescribed.get(owner)
+            if motion is not None and kind == "angle":
+                given[name] = motion.angle(time)
+            elif motion is not None and kind == "speed":
+                given[name] = motion.speed(time)
+            else:
+                given[name] = time if name == "t" else variable(name)
+        outputs = {name: record(evaluate(item, given)) for name, item in traced.items()}
+        depends = tuple(dict.fromkeys(n.partition(":")[2] for n in sorted(variables(*outputs.values())) if n != "t"))
+        return CoupledRecord(element.name, tuple(outputs), outputs, depends, plain)
+    except TraceError as error:
+        seen = tuple(name for name in _looked_at(element.contribution) if name in kept)
+        probe = Moment(time=1e-3, angles=dict.fromkeys(kept, 1e-3), speeds=dict.fromkeys(kept, 1e-3), states=dict.fromkeys(kept, 1e-3))
+        return CoupledRecord(element.name, tuple(plain(probe)), None, seen, plain, str(error))

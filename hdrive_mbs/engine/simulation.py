@@ -1,0 +1,150 @@
+"""One run of an assembly: progress, cancel, and the checks that exudyn does not make."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.engine.assembly import Assembly
+from hdrive_mbs.engine.solvers import Solver
+from hdrive_mbs.errors import SimulationError
+
+FloatArray = npt.NDArray[np.float64]
+Progress = Callable[[float], None]
+"""Called now and then with the simulated time reached [s]."""
+
+
+@dataclass(frozen=True)
+class RawRun:
+    """What came out of the engine: forward coordinates on the solver's own times."""
+
+    times: FloatArray
+    angles: Mapping[str, FloatArray]
+    speeds: Mapping[str, FloatArray]
+    states: Mapping[str, FloatArray]
+    status: str
+    steps: int
+    rejected: int
+    seconds: float
+
+
+@contextmanager
+def _interrupt_flag() -> Iterator[threading.Event]:
+    """An event that Ctrl-C sets while the context is active (main thread only)."""
+    flag = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield flag
+        return
+    previous = signal.signal(signal.SIGINT, lambda *_: flag.set())
+    try:
+        yield flag
+    finally:
+        signal.signal(signal.SIGINT, previous)
+
+
+def run(
+    assembly: Assembly,
+    *,
+    duration: float,
+    solver: Solver,
+    angles: Mapping[str, float],
+    speeds: Mapping[str, float],
+    states: Mapping[str, float],
+    sample_step: float = 0.0,
+    progress: Progress | None = None,
+    cancel: threading.Event | None = None,
+) -> RawRun:
+    """Integrate from t = 0 to duration.
+
+    sample_step : record no more often than this [s]; 0 records every step
+    cancel : an event that stops the run from another thread; Ctrl-C does the same
+
+    Raises SimulationError when the run diverged or stopped early; a cancelled run returns what
+    it has with status "cancelled".
+    """
+    mbs = assembly.mbs
+    assembly.set_initial(angles, speeds, states)
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = sample_step
+    settings.timeIntegration.verboseMode = 0
+    settings.timeIntegration.startTime = 0.0
+    settings.timeIntegration.endTime = duration
+    settings.timeIntegration.explicit.computeEndOfStepAccelerations = False
+    solver_type = solver.configure(settings, duration)
+    error = ""
+    with _interrupt_flag() as interrupted:
+        _watch(mbs, interrupted, cancel, progress)
+        started = time.process_time()
+        try:
+            mbs.SolveDynamic(settings, solverType=solver_type, showHints=False, showCausingItems=False)
+        except Exception as failure:  # exudyn raises its own and pybind errors; all end the run the same way
+            error = str(failure).strip().splitlines()[-1] if str(failure).strip() else type(failure).__name__
+        seconds = time.process_time() - started
+    cancelled = interrupted.is_set() or (cancel is not None and cancel.is_set())
+    return _collect(assembly, solver, duration, error, cancelled, seconds)
+
+
+def _watch(mbs: Any, interrupted: threading.Event, cancel: threading.Event | None, progress: Progress | None) -> None:
+    """Look at the cancel flags before each step, and report at most ten times a second."""
+    next_report = [time.monotonic() + 0.1]
+    clock = time.monotonic
+
+    def before_step(_mbs: Any, t: float) -> bool:
+        if interrupted.is_set() or (cancel is not None and cancel.is_set()):
+            return False
+        if progress is not None and clock() > next_report[0]:
+            progress(t)
+            next_report[0] = clock() + 0.1
+        return True
+
+    mbs.SetPreStepUserFunction(before_step)
+
+
+def _collect(assembly: Assembly, solver: Solver, duration: float, error: str, cancelled: bool, seconds: float) -> RawRun:
+    mbs = assembly.mbs
+    columns = {name: [np.asarray(mbs.GetSensorStoredData(sensor)) for sensor in pair] for name, pair in assembly.sensors.items()}
+    times = next(iter(columns.values()))[0][:, 0]
+    # exudyn repeats the last sample when the end falls on a write time
+    keep = np.concatenate(([True], np.diff(times) > 0.0)) if len(times) else np.zeros(0, bool)
+    times = times[keep]
+    q = {name: pair[0][keep, 1] for name, pair in columns.items()}
+    v = {name: pair[1][keep, 1] for name, pair in columns.items()}
+    finite = np.ones(len(times), bool)
+    for values in (*q.values(), *v.values()):
+        finite &= np.isfinite(values)
+    reached = float(times[-1]) if len(times) else 0.0
+    advice = (
+        "Use a smaller step or tighter tolerances, an implicit solver (Trapezoidal) for stiff shafts and damping, "
+        "or look at the law that jumps."
+    )
+    if not finite.all():
+        first = int(np.argmin(finite))
+        raise SimulationError(
+            f"The run diverged: values are not finite from t = {times[first]:.6g} s on (of {duration:g} s) "
+            f"with {solver.describe()}. {advice}"
+        )
+    complete = reached >= duration * (1.0 - 1e-9)
+    if not complete and not cancelled:
+        why = f" ({error})" if error else ""
+        raise SimulationError(f"The run stopped at t = {reached:.6g} s of {duration:g} s with {solver.describe()}{why}. {advice}")
+    iteration = mbs.sys["dynamicSolver"].it
+    return RawRun(
+        times=times,
+        angles={name: q[name] for name in assembly.bodies},
+        speeds={name: v[name] for name in assembly.bodies},
+        states={name: v[name] for name in assembly.states},
+        status="complete" if complete else "cancelled",
+        steps=int(iteration.currentStepIndex) - 1,
+        rejected=int(iteration.rejectedAutomaticStepSizeSteps),
+        seconds=seconds,
+    )

@@ -1,0 +1,50 @@
+"""Errors of the package.  Each names the object, the value with its unit, the limit and the way out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+class HdriveError(Exception):
+    """Base of every error that this package raises on purpose."""
+
+
+class ParameterError(HdriveError, ValueError):
+    """A parameter value is outside what its law or part allows."""
+
+
+class UnitError(HdriveError, ValueError):
+    """A unit is unknown or does not fit the quantity."""
+
+
+class PlaceError(HdriveError, KeyError):
+    """A place, part, parameter or channel does not exist, or is of the wrong kind."""
+
+    def __str__(self) -> str:
+        return str(self.args[0]) if self.args else ""
+
+
+class SceneError(HdriveError, ValueError):
+    """The parts of a scene do not form a model that can be solved."""
+
+
+class LawError(HdriveError, ValueError):
+    """A law breaks what it claims (restoring, passive) or its lowered form differs from it."""
+
+
+class FileFormatError(HdriveError, ValueError):
+    """A file is truncated, foreign, or does not say what the reader needs."""
+
+
+class SimulationError(HdriveError, RuntimeError):
+    """A run diverged, stopped early or could not be started."""
+
+
+class AnalysisError(HdriveError, RuntimeError):
+    """An analysis has no defensible answer for this scene."""
+
+
+def unknown_place(kind: str, name: str, known: Iterable[str], owner: str = "This scene") -> PlaceError:
+    """A PlaceError of the form ``No place 'gaer'. This scene has: motor, gear.``"""
+    listed = ", ".join(known) or "none"
+    return PlaceError(f"No {kind} {name!r}. {owner} has: {listed}.")

@@ -1,0 +1,1 @@
+"""Load torques, one file each.  A user's own subclasses LoadLaw."""

@@ -1,0 +1,1 @@
+"""Motor characteristics, one file each.  A user's own subclasses MotorCharacteristic."""

@@ -1,0 +1,196 @@
+"""The network while it is being built: parts add to it, effects change it.
+
+A part or effect of a user's own needs only these methods: ``body``, ``connection``,
+``add_torque``, ``add_connection``, ``add_state``, ``prescribe`` and ``add_channel``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from hdrive_mbs.errors import PlaceError, SceneError, unknown_place
+from hdrive_mbs.expression import Value
+from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, KinematicTerm, StateRate
+from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.network import Body, Channel, Motion, Network, State
+
+Torque = Callable[[Moment, Value, Value], Value]
+
+
+@dataclass
+class ConnectionDraft:
+    """A connection that effects may still change.
+
+    ``law(moment, stretch, rate)`` is the constitutive law; ``parallel`` holds torques that act
+    beside it; ``terms`` are kinematic errors that add to the stretch.
+    """
+
+    name: str
+    factors: dict[str, float]
+    law: Torque
+    parallel: list[tuple[str, Torque]] = field(default_factory=list)
+    terms: list[KinematicTerm] = field(default_factory=list)
+    bodies: dict[str, str] = field(default_factory=dict)
+
+    def wrap(self, change: Callable[[Torque], Torque]) -> None:
+        """Replace the law by ``change(law)``."""
+        self.law = change(self.law)
+
+    def build(self) -> Connection:
+        law, parallel = self.law, tuple(torque for _, torque in self.parallel)
+
+        def total(moment: Moment, stretch: Value, rate: Value) -> Value:
+            torque = law(moment, stretch, rate)
+            for extra in parallel:
+                torque = torque + extra(moment, stretch, rate)
+            return torque
+
+        return Connection(self.name, dict(self.factors), total if parallel else law, tuple(self.terms))
+
+
+@dataclass(frozen=True)
+class Node:
+    """A place where flanges are rigidly connected."""
+
+    name: str
+    inertia: float
+    sense: int
+    ratio: float
+
+
+class Draft:
+    """A network under construction."""
+
+    def __init__(self, nodes: dict[str, Node], flanges: dict[str, str]) -> None:
+        self._nodes = nodes
+        self._flanges = flanges  # flange path -> node name
+        self._motions: dict[str, Callable[[Value], Value]] = {}
+        self._connections: dict[str, ConnectionDraft] = {}
+        self._aliases: dict[str, str] = {}  # other names of a connection
+        self._states: dict[str, State] = {}
+        self._elements: list[Element] = []
+        self._channels: dict[str, Channel] = {}
+
+    # -- places ---------------------------------------------------------------------------------
+    def body(self, place: str, asked_by: str = "This") -> Node:
+        """The rotating place of that name: coordinate name, inertia, sense and ratio.
+
+        Raises PlaceError when the place does not exist or is not a body.
+        """
+        if place in self._flanges:
+            return self._nodes[self._flanges[place]]
+        known = [name for name in self._flanges if self._flanges[name] != "ground"]
+        if place in self._connections or place in self._aliases:
+            raise PlaceError(f"{asked_by} acts on a rotating body, but {place!r} is a connection. Bodies: {', '.join(known)}.")
+        raise unknown_place("body", place, known)
+
+    def connection(self, place: str, asked_by: str = "This") -> ConnectionDraft:
+        """The connection of that name (a shaft, the mesh of a gear).
+
+        Raises PlaceError when the place does not exist or is not a connection.
+        """
+        name = self._aliases.get(place, place)
+        if name in self._connections:
+            return self._connections[name]
+        known = [*self._connections, *self._aliases]
+        if place in self._flanges:
+            raise PlaceError(f"{asked_by} acts on a connection, but {place!r} is a body. Connections: {', '.join(known)}.")
+        raise unknown_place("connection", place, known)
+
+    # -- building -------------------------------------------------------------------------------
+    def add_connection(
+        self, name: str, factors: dict[str, float], law: Torque, *, aliases: tuple[str, ...] = (), bodies: dict[str, str] | None = None
+    ) -> ConnectionDraft:
+        """A torsional element along  x = sum(f_i q_i); channels twist, twist_rate and torque."""
+        merged: dict[str, float] = {}
+        for coordinate, factor in factors.items():
+            merged[coordinate] = merged.get(coordinate, 0.0) + factor
+        draft = ConnectionDraft(name, merged, law, bodies=dict(bodies or {}))
+        self._connections[name] = draft
+        self._aliases |= dict.fromkeys(aliases, name)
+        return draft
+
+    def add_torque(self, name: str, coordinate: str, torque: Callable[[Moment], Value], *, dissipative: bool = False) -> None:
+        """A torque on a coordinate, positive in its forward sense."""
+        self._elements.append(AppliedTorque(name, coordinate, torque, dissipative))
+
+    def add_state(self, name: str, *, unit: str, initial: float, rate: Callable[[Moment], Value]) -> str:
+        """A first-order state dz/dt = rate(moment); returns its (unique) name."""
+        unique, number = name, 2
+        while unique in self._states:
+            unique, number = f"{name}_{number}", number + 1
+        self._states[unique] = State(unique, unit, initial)
+        self._elements.append(StateRate(unique, rate))
+        self.add_channel(unique, unit, f"state {unique}", lambda moment: moment.state(unique))
+        return unique
+
+    def prescribe(self, coordinate: str, angle: Callable[[Value], Value]) -> None:
+        """Make the forward angle of a coordinate a function of time."""
+        self._motions[coordinate] = angle
+
+    def add_channel(self, name: str, unit: str, doc: str, read: Callable[[Moment], Value], *, slope: str | None = None) -> None:
+        """A named quantity of the result."""
+        if name not in self._channels:
+            self._channels[name] = Channel(name, unit, doc, read, slope)
+
+    # -- the end --------------------------------------------------------------------------------
+    def finish(self) -> Network:
+        """The network, checked for bodies without inertia."""
+        bodies, motions = [], []
+        for node in self._nodes.values():
+            if node.name == "ground":
+                motions.append(Motion("ground", _at_rest, 1, 0.0))
+            elif node.name in self._motions:
+                motions.append(Motion(node.name, self._motions[node.name], node.sense, node.ratio))
+            elif node.inertia > 0.0:
+                bodies.append(Body(node.name, node.inertia, node.sense, node.ratio))
+            else:
+                raise SceneError(
+                    f"{node.name!r} has no inertia (0 kg m^2), so its acceleration is undefined. "
+                    "Give the part an inertia, put an Inertia there, or connect it rigidly."
+                )
+        if not bodies:
+            raise SceneError("The scene has no body that can move: every place is held or prescribed.")
+        connections = [draft.build() for draft in self._connections.values()]
+        prescribed = {motion.name: motion for motion in motions}
+        channels = list(self._body_channels(prescribed)) + list(self._connection_channels(connections))
+        channels += self._channels.values()
+        elements: list[Element] = [*connections, *self._elements]
+        return Network(tuple(bodies), tuple(motions), tuple(self._states.values()), tuple(elements), tuple(channels), dict(self._flanges))
+
+    def _body_channels(self, prescribed: dict[str, Motion]) -> list[Channel]:
+        channels = []
+        for place, node_name in self._flanges.items():
+            if node_name == "ground":
+                continue
+            node = self._nodes[node_name]
+            channels += [
+                Channel(f"{place}.angle", "rad", f"angle of {place}, true sense", _angle(node), f"{place}.speed"),
+                Channel(f"{place}.speed", "rad/s", f"speed of {place}, true sense", _speed(node), f"{place}.acceleration"),
+            ]
+        return channels
+
+    @staticmethod
+    def _connection_channels(connections: list[Connection]) -> list[Channel]:
+        channels = []
+        for connection in connections:
+            name, rate = connection.name, f"{connection.name}.twist_rate"
+            channels += [
+                Channel(f"{name}.twist", "rad", f"elastic twist of {name}, positive when driving", connection.stretch, rate),
+                Channel(rate, "rad/s", f"rate of the twist of {name}", connection.rate),
+                Channel(f"{name}.torque", "N m", f"torque through {name}, positive when driving", connection.value),
+            ]
+        return channels
+
+
+def _at_rest(time: Value) -> Value:
+    return 0.0 * time
+
+
+def _angle(node: Node) -> Callable[[Moment], Value]:
+    return lambda moment: node.sense * moment.angle(node.name)
+
+
+def _speed(node: Node) -> Callable[[Moment], Value]:
+    return lambda moment: node.sense * moment.speed(node.name)

@@ -1,0 +1,228 @@
+"""Described values: every field of a part, law or effect knows its unit, meaning and range.
+
+SI inside.  Convert at the door: ``speed=rpm(1410)``, ``lost_motion=arcmin(9)``.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+from hdrive_mbs.errors import ParameterError, unknown_place
+
+
+def rpm(value: float) -> float:
+    """Revolutions per minute -> rad/s."""
+    return value * math.pi / 30.0
+
+
+def mm(value: float) -> float:
+    """Millimetres -> m."""
+    return value * 1e-3
+
+
+def degrees(value: float) -> float:
+    """Degrees -> rad."""
+    return math.radians(value)
+
+
+def arcmin(value: float) -> float:
+    """Minutes of arc -> rad."""
+    return math.radians(value / 60.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantity:
+    """Unit, meaning and allowed range of one field."""
+
+    unit: str
+    doc: str
+    low: float | None = None
+    high: float | None = None
+    above: float | None = None
+    sequence: bool = False
+
+    def check(self, where: str, value: float) -> None:
+        """Raise ParameterError when the value is not finite or out of range."""
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        if not math.isfinite(value):
+            raise ParameterError(f"{where} = {value}{unit}: must be a finite number ({self.doc}).")
+        limits = (
+            (self.above is not None and value <= self.above, f"must be greater than {self.above}{unit}"),
+            (self.low is not None and value < self.low, f"must be at least {self.low}{unit}"),
+            (self.high is not None and value > self.high, f"must be at most {self.high}{unit}"),
+        )
+        for broken, limit in limits:
+            if broken:
+                raise ParameterError(f"{where} = {value:g}{unit}: {limit} ({self.doc}).")
+
+
+def parameter(
+    unit: str,
+    doc: str,
+    *,
+    default: Any = dataclasses.MISSING,
+    low: float | None = None,
+    high: float | None = None,
+    above: float | None = None,
+) -> Any:
+    """A number with a unit.  ``low``/``high`` are allowed values, ``above`` is not."""
+    quantity = Quantity(unit=unit, doc=doc, low=low, high=high, above=above)
+    return dataclasses.field(default=default, metadata={"quantity": quantity})
+
+
+def table(
+    unit: str,
+    doc: str,
+    *,
+    default: Any = dataclasses.MISSING,
+    low: float | None = None,
+    high: float | None = None,
+    above: float | None = None,
+) -> Any:
+    """A sequence of numbers with a unit, kept as a tuple so that parts compare by value."""
+    quantity = Quantity(unit=unit, doc=doc, low=low, high=high, above=above, sequence=True)
+    return dataclasses.field(default=default, metadata={"quantity": quantity})
+
+
+def option(doc: str, *, default: Any = dataclasses.MISSING) -> Any:
+    """A field that is not a number: a law, a switch, the name of a place."""
+    return dataclasses.field(default=default, metadata={"doc": doc})
+
+
+@dataclass(frozen=True, kw_only=True)
+class FreeParameter:
+    """A number in a scene that can be set by its path: value, unit, range and meaning."""
+
+    path: str
+    value: float
+    quantity: Quantity
+
+    @property
+    def unit(self) -> str:
+        return self.quantity.unit
+
+    @property
+    def low(self) -> float:
+        bounds = [b for b in (self.quantity.low, self.quantity.above) if b is not None]
+        return max(bounds, default=-math.inf)
+
+    @property
+    def high(self) -> float:
+        return math.inf if self.quantity.high is None else self.quantity.high
+
+    def __str__(self) -> str:
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return f"{self.path} = {self.value:.6g}{unit}  [{self.low:g}, {self.high:g}]  {self.quantity.doc}"
+
+
+def snake_case(name: str) -> str:
+    """``CoulombStribeckFriction`` -> ``coulomb_stribeck_friction``."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Described:
+    """Base of all immutable data: checks its quantities, compares by value, copies with changes."""
+
+    _kind: ClassVar[str] = "object"
+
+    def __post_init__(self) -> None:
+        for field in dataclasses.fields(self):
+            quantity: Quantity | None = field.metadata.get("quantity")
+            if quantity is not None:
+                self._check_field(field.name, quantity)
+        self.check()
+
+    def _check_field(self, name: str, quantity: Quantity) -> None:
+        where = f"{type(self).__name__}.{name}"
+        value = getattr(self, name)
+        if quantity.sequence:
+            try:
+                numbers = tuple(_as_float(f"{where}[{i}]", item) for i, item in enumerate(value))
+            except TypeError:
+                raise ParameterError(f"{where} = {value!r}: must be a sequence of numbers in {quantity.unit}.") from None
+            for index, number in enumerate(numbers):
+                quantity.check(f"{where}[{index}]", number)
+            object.__setattr__(self, name, numbers)
+        elif value is not None:
+            number = _as_float(where, value)
+            quantity.check(where, number)
+            object.__setattr__(self, name, number)
+
+    def check(self) -> None:
+        """Checks between fields; override in a part or law and raise ParameterError."""
+
+    def replacing(self, **changes: Any) -> Self:
+        """A copy with fields changed.  Unknown fields are refused."""
+        known = [field.name for field in dataclasses.fields(self)]
+        for name in changes:
+            if name not in known:
+                raise unknown_place("field", name, known, type(self).__name__)
+        return dataclasses.replace(self, **changes)
+
+    def fields(self) -> Iterator[tuple[str, Any, Mapping[str, Any]]]:
+        """Name, value and metadata of each field."""
+        for field in dataclasses.fields(self):
+            yield field.name, getattr(self, field.name), field.metadata
+
+    def free_parameters(self, prefix: str = "") -> Iterator[FreeParameter]:
+        """All numbers of this object and of the objects in it, by path."""
+        for name, value, metadata in self.fields():
+            path = f"{prefix}.{name}" if prefix else name
+            quantity: Quantity | None = metadata.get("quantity")
+            if isinstance(value, Described):
+                yield from value.free_parameters(path)
+            elif quantity is not None and not quantity.sequence and value is not None:
+                yield FreeParameter(path=path, value=value, quantity=quantity)
+
+    def setting(self, path: str, value: Any) -> Self:
+        """A copy with the field at a dotted path changed."""
+        head, _, rest = path.partition(".")
+        known = [field.name for field in dataclasses.fields(self)]
+        if head not in known:
+            raise unknown_place("parameter", head, known, type(self).__name__)
+        if not rest:
+            return dataclasses.replace(self, **{head: value})
+        inner = getattr(self, head)
+        if not isinstance(inner, Described):
+            raise unknown_place("parameter", path, known, type(self).__name__)
+        return dataclasses.replace(self, **{head: inner.setting(rest, value)})
+
+    def describe(self) -> str:
+        """One readable line: the type and its fields with units."""
+        words = []
+        for name, value, metadata in self.fields():
+            quantity: Quantity | None = metadata.get("quantity")
+            words.append(f"{name}={_readable(value, quantity)}")
+        return f"{type(self).__name__}({', '.join(words)})"
+
+    def __str__(self) -> str:
+        return self.describe()
+
+
+def _as_float(where: str, value: Any) -> float:
+    if isinstance(value, (str, bytes, bool)):
+        raise ParameterError(f"{where} = {value!r}: must be a number.")
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise ParameterError(f"{where} = {value!r}: must be a number.") from None
+
+
+def _readable(value: Any, quantity: Quantity | None) -> str:
+    unit = "" if quantity is None or quantity.unit == "1" else f" {quantity.unit}"
+    if isinstance(value, float):
+        return f"{value:.6g}{unit}"
+    if isinstance(value, tuple) and quantity is not None:
+        shown = ", ".join(f"{item:.6g}" for item in value[:4])
+        return f"({shown}, ... {len(value)} values){unit}" if len(value) > 4 else f"({shown}){unit}"
+    if isinstance(value, Described):
+        return value.describe()
+    if isinstance(value, Callable):  # type: ignore[arg-type]
+        return f"function {getattr(value, '__name__', type(value).__name__)}"
+    return repr(value)

@@ -1,0 +1,194 @@
+"""A scene: parts, connections and effects at named places.  Immutable; a change is a copy."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from hdrive_mbs.components.component import Component
+from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import LawError, PlaceError, SceneError, unknown_place
+from hdrive_mbs.network.network import Network
+from hdrive_mbs.quantities import FreeParameter, snake_case
+from hdrive_mbs.topology import GROUND, check_connections, resolve_flanges, start_draft
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlacedEffect:
+    """An effect with its name in the scene and its place."""
+
+    name: str
+    effect: Effect
+    at: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """Parts connected at named places, and the effects that act there.
+
+    parts : name -> part.  Names are plain words (``motor``, ``input_shaft``).
+    connections : chains of places that are rigidly joined, e.g. ``("motor", "input_shaft", "gear")``.
+        A part in the middle of a chain is entered by its entry flange and left by its exit flange;
+        a flange can be named: ``("gear.circular_spline", "housing")``; ``"ground"`` holds.
+    effects : see ``with_effect``.
+
+    Raises SceneError or PlaceError when a place is unknown or an end stays loose.
+    """
+
+    name: str
+    parts: Mapping[str, Component]
+    connections: Sequence[Sequence[str]]
+    effects: tuple[PlacedEffect, ...] = ()
+    notes: str = ""
+    _cache: dict[str, Network] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "parts", dict(self.parts))
+        object.__setattr__(self, "connections", tuple(tuple(chain) for chain in self.connections))
+        object.__setattr__(self, "effects", tuple(self.effects))
+        for name, part in self.parts.items():
+            if not name.isidentifier() or name == GROUND:
+                raise SceneError(f"Part name {name!r}: use a plain word (letters, digits, underscore), and not 'ground'.")
+            if not isinstance(part, Component):
+                raise SceneError(f"Part {name!r} is a {type(part).__name__}, not a component.")
+        check_connections(self.parts, self.connections)
+
+    def __hash__(self) -> int:
+        return hash((self.name, tuple(self.parts), self.connections))
+
+    # -- changes ---------------------------------------------------------------------------------
+    def with_effect(self, effect: Effect, *, at: str, name: str | None = None) -> Scene:
+        """A copy with an effect at a place.  The name defaults to the effect's type, made unique."""
+        if not isinstance(effect, Effect):
+            raise SceneError(f"{effect!r} is not an effect.")
+        taken = {placed.name for placed in self.effects} | set(self.parts)
+        stem = name or snake_case(type(effect).__name__)
+        if name is not None and name in taken:
+            raise SceneError(f"The name {name!r} is taken. In use: {', '.join(sorted(taken))}.")
+        if not stem.isidentifier():
+            raise SceneError(f"Effect name {stem!r}: use a plain word (letters, digits, underscore).")
+        unique, number = stem, 2
+        while unique in taken:
+            unique, number = f"{stem}_{number}", number + 1
+        changed = replace(self, effects=(*self.effects, PlacedEffect(name=unique, effect=effect, at=at)))
+        changed._check_place(effect, at)
+        return changed
+
+    def _check_place(self, effect: Effect, at: str) -> None:
+        draft = start_draft(self.parts, self.connections)
+        for name, part in self.parts.items():
+            part.build(name, draft)
+        if effect.acts_on == "body":
+            draft.body(at, type(effect).__name__)
+        elif effect.acts_on == "connection":
+            draft.connection(at, type(effect).__name__)
+
+    def without(self, name: str) -> Scene:
+        """A copy without the effect (or part) of that name."""
+        if any(placed.name == name for placed in self.effects):
+            return replace(self, effects=tuple(placed for placed in self.effects if placed.name != name))
+        if name not in self.parts:
+            raise unknown_place("effect or part", name, [*(e.name for e in self.effects), *self.parts])
+        parts = {key: part for key, part in self.parts.items() if key != name}
+        chains: list[Sequence[str]] = []
+        for chain in self.connections:
+            piece: list[str] = []
+            for place in chain:
+                if place.split(".")[0] == name:
+                    chains.append(piece)
+                    piece = []
+                else:
+                    piece.append(place)
+            chains.append(piece)
+        return replace(self, parts=parts, connections=[chain for chain in chains if len(chain) > 1])
+
+    def replacing(self, changes: Mapping[str, Any] | None = None, **parts: Any) -> Scene:
+        """A copy with values, laws or whole parts replaced by path.
+
+        ``scene.replacing({"motor.inertia": 2e-3, "gear.stiffness": law})`` or ``scene.replacing(motor=part)``.
+        Paths of effects begin with the effect's name.  Raises PlaceError for an unknown path.
+        """
+        result = self
+        for path, value in {**(changes or {}), **parts}.items():
+            result = result._setting(path, value)
+        return result
+
+    def _setting(self, path: str, value: Any) -> Scene:
+        head, _, rest = path.partition(".")
+        try:
+            if head in self.parts:
+                part = self.parts[head].setting(rest, value) if rest else value
+                return replace(self, parts={**self.parts, head: part})
+            placed = self.effect(head)
+        except PlaceError as error:
+            near = difflib.get_close_matches(path, list(self.parameters()), n=1)
+            hint = f" Did you mean {near[0]!r}?" if near else ""
+            raise PlaceError(f"{path!r}: {error}{hint}") from None
+        effect = placed.effect.setting(rest, value) if rest else value
+        return replace(self, effects=tuple(replace(e, effect=effect) if e.name == head else e for e in self.effects))
+
+    # -- questions -------------------------------------------------------------------------------
+    def effect(self, name: str) -> PlacedEffect:
+        """The effect of that name."""
+        for placed in self.effects:
+            if placed.name == name:
+                return placed
+        raise unknown_place("part or effect", name, [*self.parts, *(placed.name for placed in self.effects)])
+
+    def parameters(self) -> dict[str, FreeParameter]:
+        """Every number that can be set, by path, with unit, range and meaning."""
+        found: dict[str, FreeParameter] = {}
+        for name, part in self.parts.items():
+            found |= {item.path: item for item in part.free_parameters(name)}
+        for placed in self.effects:
+            found |= {item.path: item for item in placed.effect.free_parameters(placed.name)}
+        return found
+
+    def places(self) -> tuple[str, ...]:
+        """Names that a connection, effect or sensor can refer to."""
+        return tuple(resolve_flanges(self.parts))
+
+    def network(self) -> Network:
+        """The equations of the scene (kept, so asking twice costs nothing).
+
+        Raises SceneError for bodies without inertia and LawError for a law that breaks its claim.
+        """
+        if "network" not in self._cache:
+            draft = start_draft(self.parts, self.connections)
+            for name, part in self.parts.items():
+                part.build(name, draft)
+            for placed in self.effects:
+                placed.effect.apply(draft, placed.at, placed.name)
+            self._cache["network"] = draft.finish()
+        return self._cache["network"]
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_cache": {}}
+
+    def __str__(self) -> str:
+        return describe(self)
+
+
+def describe(scene: Scene) -> str:
+    """The scene in readable lines: parts with units, connections, effects, senses of rotation."""
+    lines = [f"Scene {scene.name!r}", "  parts"]
+    width = max(len(name) for name in scene.parts)
+    lines += [f"    {name:<{width}}  {part.describe()}" for name, part in scene.parts.items()]
+    lines.append("  connections")
+    lines += [f"    {' - '.join(chain)}" for chain in scene.connections]
+    if scene.effects:
+        lines.append("  effects")
+        lines += [f"    {placed.name} at {placed.at}: {placed.effect.describe()}" for placed in scene.effects]
+    lines.append("  turns per turn of the motor")
+    lines += [f"    {body.name:<{width}}  {body.ratio:+.6g}" for body in scene.network().bodies]
+    return "\n".join(lines)
+
+
+def names(items: Iterable[str]) -> str:
+    """A readable list."""
+    return ", ".join(items) or "none"
+
+
+__all__ = ["GROUND", "LawError", "PlacedEffect", "Scene", "describe"]

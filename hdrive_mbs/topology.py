@@ -1,0 +1,149 @@
+"""How the parts of a scene hang together: flanges, rigidly joined nodes, senses of rotation."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from hdrive_mbs.components.component import Component, Flange
+from hdrive_mbs.components.motor import Motor
+from hdrive_mbs.errors import SceneError, unknown_place
+from hdrive_mbs.network.draft import Draft, Node
+
+GROUND = "ground"
+
+
+def _path(part: str, flange: Flange) -> str:
+    return f"{part}.{flange.name}" if flange.name else part
+
+
+def resolve_flanges(parts: Mapping[str, Component]) -> dict[str, Flange]:
+    """Path of every flange in the scene."""
+    return {_path(name, flange): flange for name, part in parts.items() for flange in part.flanges()}
+
+
+def _end(place: str, parts: Mapping[str, Component], leaving: bool) -> str:
+    """Flange path of a place in a chain, on the side towards its neighbour."""
+    if place == GROUND:
+        return GROUND
+    if place in resolve_flanges(parts):
+        return place
+    if place not in parts:
+        raise unknown_place("place", place, [*parts, *(p for p in resolve_flanges(parts) if "." in p), GROUND])
+    part = parts[place]
+    flange = part.exit if leaving else part.entry
+    if not part.flanges():
+        raise SceneError(f"{place!r} ({type(part).__name__}) has no flange to connect.")
+    return f"{place}.{flange}" if flange else place
+
+
+def joints(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> list[tuple[str, str]]:
+    """Pairs of flange paths that are rigidly joined."""
+    pairs = []
+    for chain in connections:
+        if len(chain) < 2:
+            raise SceneError(f"Connection {tuple(chain)}: a connection names at least two places.")
+        for left, right in itertools.pairwise(chain):
+            pairs.append((_end(left, parts, leaving=True), _end(right, parts, leaving=False)))
+    return pairs
+
+
+def check_connections(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> None:
+    """Raise SceneError for a loose end and PlaceError for an unknown place."""
+    used = {path for pair in joints(parts, connections) for path in pair}
+    alone = len([name for name, part in parts.items() if part.flanges()]) == 1
+    for name, part in parts.items():
+        flanges = part.flanges()
+        for flange in flanges:
+            path = _path(name, flange)
+            if path in used or flange.optional or (alone and len(flanges) == 1):
+                continue
+            raise SceneError(
+                f"Loose end: nothing is connected to {path!r} ({type(part).__name__}). "
+                f"Add it to a connection, e.g. ({path!r}, 'ground'), or remove {name!r}."
+            )
+
+
+def _group(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> dict[str, str]:
+    """Flange path -> name of its node.  The node is named after its first part with a body."""
+    flanges = resolve_flanges(parts)
+    parent = {path: path for path in [*flanges, GROUND]}
+
+    def root(path: str) -> str:
+        while parent[path] != path:
+            path = parent[path]
+        return path
+
+    pairs = joints(parts, connections)
+    used = {path for pair in pairs for path in pair}
+    pairs += [(path, GROUND) for path, flange in flanges.items() if flange.optional and path not in used]
+    for name, part in parts.items():
+        if part.rigid:
+            first, *others = [_path(name, flange) for flange in part.flanges()]
+            pairs += [(first, other) for other in others]
+    for a, b in pairs:
+        parent[root(a)] = root(b)
+    members: dict[str, list[str]] = {}
+    for path in [*flanges, GROUND]:
+        members.setdefault(root(path), []).append(path)
+    names: dict[str, str] = {}
+    for paths in members.values():
+        # single-flange parts (motor, load) name the node; then gears; then shaft ends
+        named = min(paths, key=lambda path: ("." in path, path.endswith((".a", ".b"))))
+        node = GROUND if GROUND in paths else named
+        names |= dict.fromkeys(paths, node)
+    return names
+
+
+def _ideal_ratios(parts: Mapping[str, Component], names: Mapping[str, str]) -> dict[str, float]:
+    """True-sense speed of each node for unit speed of the motor, all elasticities rigid.
+
+    Solves the parts' linear relations in the least-squares sense; optional flanges are weakly
+    held, so that an unconnected second input counts as standing still.
+    """
+    nodes = list(dict.fromkeys(names.values()))
+    index = {node: i for i, node in enumerate(nodes)}
+    rows: list[np.ndarray] = []
+    right: list[float] = []
+
+    def add(coefficients: Mapping[str, float], value: float, weight: float = 1.0) -> None:
+        row = np.zeros(len(nodes))
+        for node, coefficient in coefficients.items():
+            row[index[node]] += coefficient
+        rows.append(weight * row)
+        right.append(weight * value)
+
+    for name, part in parts.items():
+        for relation in part.relations():
+            scale = 1.0 / max(abs(value) for value in relation.values())
+            joined: dict[str, float] = {}
+            for flange, value in relation.items():
+                node = names[f"{name}.{flange}"]
+                joined[node] = joined.get(node, 0.0) + scale * value
+            add(joined, 0.0)
+        for flange_data in part.flanges():
+            if flange_data.optional:
+                add({names[_path(name, flange_data)]: 1.0}, 0.0, weight=1e-6)
+    if GROUND in index:
+        add({GROUND: 1.0}, 0.0)
+    motor = next((name for name, part in parts.items() if isinstance(part, Motor)), None)
+    reference = names[motor] if motor else next((node for node in nodes if node != GROUND), nodes[0])
+    add({reference: 1.0}, 1.0, weight=1e3)
+    solution = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0]
+    return {node: float(solution[i]) for node, i in index.items()}
+
+
+def start_draft(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> Draft:
+    """A draft with all nodes (inertias summed) and no elements yet."""
+    names = _group(parts, connections)
+    ratios = _ideal_ratios(parts, names)
+    inertias: dict[str, float] = dict.fromkeys(ratios, 0.0)
+    for path, flange in resolve_flanges(parts).items():
+        inertias[names[path]] += flange.inertia
+    nodes = {
+        node: Node(node, inertias[node], -1 if ratio < -1e-9 else 1, 0.0 if abs(ratio) < 1e-9 else round(ratio, 12))
+        for node, ratio in ratios.items()
+    }
+    return Draft(nodes, {path: node for path, node in names.items() if path != GROUND} | {GROUND: GROUND})
