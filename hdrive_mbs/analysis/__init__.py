@@ -1,1 +1,1 @@
-"""."""
+"""Analyses: each is a function of a scene that returns one frozen result."""

@@ -1,0 +1,186 @@
+"""What every result offers: status, settings, versions, save and load, CSV."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import hashlib
+import io
+import json
+import os
+import platform
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib import metadata
+from pathlib import Path
+from typing import Any, BinaryIO, Self
+
+import numpy as np
+
+from hdrive_mbs.errors import FileFormatError
+from hdrive_mbs.scene import Scene
+from hdrive_mbs.scene_file import scene_from_dict, scene_to_dict
+from hdrive_mbs.writing import write_text, write_whole
+
+FORMAT = "hdrive-mbs result 1"
+
+
+def versions() -> dict[str, str]:
+    """Versions of what computes: this package, exudyn, numpy, scipy, Python."""
+    found = {"python": platform.python_version()}
+    for name in ("hdrive-mbs", "exudyn", "numpy", "scipy"):
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found[name] = "unknown"
+    return found
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Result:
+    """Base of all results.  Fields are arrays, numbers, texts, and mappings or tuples of these.
+
+    scene : the scene that was analysed (None for a loaded file whose scene holds Python functions)
+    status : "complete", or what is missing and what to do
+    settings : what the analysis was asked for
+    versions : of the packages that computed it
+    """
+
+    scene: Scene | None
+    status: str
+    settings: Mapping[str, Any]
+    versions: Mapping[str, str] = field(default_factory=versions)
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """Equally long columns for CSV, headed ``name [unit]``."""
+        raise NotImplementedError(f"{type(self).__name__} has no table.")
+
+    def to_csv(self, path: str | os.PathLike[str]) -> Path:
+        """Write the columns as CSV (comma, point, one header line with units)."""
+        columns = self.columns()
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(columns)
+        for row in zip(*columns.values(), strict=True):
+            writer.writerow([f"{value:.12g}" if isinstance(value, (float, np.floating)) else value for value in row])
+        return write_text(path, text.getvalue())
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the whole result to one file (numpy archive with a JSON head and a checksum)."""
+        arrays: dict[str, np.ndarray] = {}
+        fields = {item.name: getattr(self, item.name) for item in dataclasses.fields(self) if item.name != "scene"}
+        head = {name: _pack(value, name, arrays) for name, value in fields.items()}
+        scene, problem = _packed_scene(self.scene)
+        document = {
+            "format": FORMAT,
+            "result": type(self).__name__,
+            "fields": head,
+            "scene": scene,
+            "scene_problem": problem,
+            "sha256": _checksum(arrays),
+        }
+        packed = np.frombuffer(json.dumps(document).encode(), dtype=np.uint8)
+
+        def write(file: BinaryIO) -> None:
+            np.savez_compressed(file, head=packed, **arrays)
+
+        return write_whole(path, write)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Read a result of this type.  Raises FileFormatError for a truncated or foreign file."""
+        result = load(path)
+        if not isinstance(result, cls):
+            raise FileFormatError(f"{path} holds a {type(result).__name__}, not a {cls.__name__}.")
+        return result
+
+
+def load(path: str | os.PathLike[str]) -> Result:
+    """Read any saved result.
+
+    Raises FileFormatError when the file is missing, truncated, changed, or not a result of ours.
+    No code is executed from the file.
+    """
+    try:
+        with np.load(Path(path), allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
+        document = json.loads(bytes(arrays.pop("head")).decode())
+    except FileNotFoundError:
+        raise FileFormatError(f"{path}: no such file.") from None
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, UnicodeDecodeError, TypeError, AttributeError) as error:
+        raise FileFormatError(f"{path} is not a result of hdrive_mbs, or it is truncated ({error}).") from error
+    if not isinstance(document, dict) or document.get("format") != FORMAT:
+        raise FileFormatError(f"{path} is not in the format {FORMAT!r}.")
+    if document.get("sha256") != _checksum(arrays):
+        raise FileFormatError(f"{path}: the checksum does not fit; the file was changed or damaged.")
+    kinds = {kind.__name__: kind for kind in _subclasses(Result)}
+    kind = kinds.get(document["result"])
+    if kind is None:
+        raise FileFormatError(f"{path} holds a {document['result']!r}, which this version does not know.")
+    values = {name: _unpack(value, arrays) for name, value in document["fields"].items()}
+    known = {item.name for item in dataclasses.fields(kind)}
+    if not set(values) <= known:
+        raise FileFormatError(f"{path}: unknown fields {sorted(set(values) - known)} for a {kind.__name__}.")
+    scene = scene_from_dict(document["scene"]) if document["scene"] is not None else None
+    return kind(scene=scene, **values)
+
+
+def _subclasses(kind: type[Result]) -> list[type[Result]]:
+    import importlib
+    import pkgutil
+
+    from hdrive_mbs import analysis
+
+    for module in pkgutil.iter_modules(analysis.__path__, "hdrive_mbs.analysis."):
+        importlib.import_module(module.name)
+    found: list[type[Result]] = []
+    stack = [kind]
+    while stack:
+        for child in stack.pop().__subclasses__():
+            found.append(child)
+            stack.append(child)
+    return found
+
+
+def _packed_scene(scene: Scene | None) -> tuple[dict[str, Any] | None, str]:
+    if scene is None:
+        return None, "no scene"
+    try:
+        return scene_to_dict(scene), ""
+    except FileFormatError as error:
+        return None, str(error)
+
+
+def _checksum(arrays: Mapping[str, np.ndarray]) -> str:
+    digest = hashlib.sha256()
+    for name in sorted(arrays):
+        digest.update(name.encode())
+        digest.update(str(arrays[name].dtype).encode())
+        digest.update(np.ascontiguousarray(arrays[name]).tobytes())
+    return digest.hexdigest()
+
+
+def _pack(value: Any, path: str, arrays: dict[str, np.ndarray]) -> Any:
+    if isinstance(value, np.ndarray):
+        arrays[path] = value
+        return {"array": path}
+    if isinstance(value, Mapping):
+        return {"map": [[key, _pack(item, f"{path}/{key}", arrays)] for key, item in value.items()]}
+    if isinstance(value, (tuple, list)):
+        return {"tuple": [_pack(item, f"{path}/{index}", arrays) for index, item in enumerate(value)]}
+    if isinstance(value, (np.integer, np.floating, np.bool_)):
+        return value.item()
+    if value is None or isinstance(value, (str, int, float, bool)):
+        return value
+    return str(value)
+
+
+def _unpack(value: Any, arrays: Mapping[str, np.ndarray]) -> Any:
+    if not isinstance(value, dict):
+        return value
+    if "array" in value:
+        return arrays[value["array"]]
+    if "map" in value:
+        return {key: _unpack(item, arrays) for key, item in value["map"]}
+    return tuple(_unpack(item, arrays) for item in value["tuple"])

@@ -1,0 +1,241 @@
+"""Time response of a scene on Exudyn."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from hdrive_mbs.analysis.result import Result
+from hdrive_mbs.engine.assembly import Assembly, assemble
+from hdrive_mbs.engine.simulation import RawRun, run
+from hdrive_mbs.engine.solvers import DormandPrince, Solver
+from hdrive_mbs.errors import ParameterError, unknown_place
+from hdrive_mbs.expression import Value
+from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.network import Network
+from hdrive_mbs.progress import progress_bar
+from hdrive_mbs.scene import Scene
+from hdrive_mbs.signals import FloatArray, TimeHistory
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Response(Result):
+    """Histories of all channels on the solver's own times.
+
+    ``response["motor.speed"]`` is a TimeHistory; angles and speeds of places are in true sense,
+    twists and torques of connections are positive when the motor drives the load forward.
+
+    times : s, shape (n,)
+    values : channel -> shape (n,)
+    units, docs : channel -> text
+    slopes : channel -> channel that holds its time derivative
+    steps, rejected : accepted and rejected steps of the solver
+    seconds : CPU time of the integration
+    lowering : element -> "native", "symbolic" or "python"
+    error : body or state -> estimated relative error (empty if not asked for)
+    """
+
+    times: FloatArray
+    values: Mapping[str, FloatArray]
+    units: Mapping[str, str]
+    docs: Mapping[str, str]
+    slopes: Mapping[str, str]
+    steps: int
+    rejected: int
+    seconds: float
+    lowering: Mapping[str, str]
+    error: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of all channels."""
+        return tuple(self.values)
+
+    def __getitem__(self, name: str) -> TimeHistory:
+        if name not in self.values:
+            raise unknown_place("channel", name, self.values, "This response")
+        slope = self.slopes.get(name)
+        return TimeHistory(name, self.units[name], self.times, self.values[name], self.values[slope] if slope else None)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.values
+
+    def columns(self) -> dict[str, np.ndarray]:
+        return {"time [s]": self.times} | {f"{name} [{self.units[name]}]": values for name, values in self.values.items()}
+
+    def summary(self) -> dict[str, dict[str, float]]:
+        """min, max, mean, rms and final value of each channel."""
+        return {name: self[name].summary() for name in self.values}
+
+
+def simulate(
+    scene: Scene,
+    duration: float,
+    *,
+    solver: Solver | None = None,
+    initial_speed: float = 0.0,
+    initial: Mapping[str, float] | None = None,
+    sample_step: float = 0.0,
+    estimate_error: bool = False,
+    progress: bool | None = None,
+    cancel: threading.Event | None = None,
+    lowering: str = "symbolic",
+) -> Response:
+    """Integrate a scene from t = 0.
+
+    duration : s
+    solver : DormandPrince() by default
+    initial_speed : motor speed at t = 0 [rad/s]; every other place turns by its ideal ratio
+    initial : values at t = 0 by channel name (``"load.angle"``, ``"motor.speed"``, a state), true sense
+    sample_step : record no more often than this [s]; 0 records every step of the solver
+    estimate_error : run again with half the step (or 32 times tighter tolerances), return the finer
+        run with its estimated error
+    progress : True, False, or None for a bar when a terminal is attached and the run takes over 1 s
+    cancel : event that stops the run; what was computed is returned with status "cancelled"
+    lowering : "python" runs every law as a Python callback (for comparison only)
+
+    Raises SimulationError when the run diverged or stopped early, ParameterError for bad arguments.
+    """
+    if not (np.isfinite(duration) and duration > 0.0):
+        raise ParameterError(f"duration = {duration:g} s: must be greater than 0 s.")
+    solver = solver if solver is not None else DormandPrince()
+    network = scene.network()
+    assembly = assemble(network, lowering=lowering)
+    starts = initial_values(network, initial_speed, initial or {})
+
+    def once(with_solver: Solver) -> RawRun:
+        with progress_bar(f"{scene.name}: {duration:g} s", duration, progress) as report:
+            return run(assembly, duration=duration, solver=with_solver, **starts, sample_step=sample_step, progress=report, cancel=cancel)
+
+    raw, error, used = once(solver), {}, solver
+    if estimate_error and raw.status == "complete":
+        used = solver.refined()
+        finer = once(used)
+        if finer.status == "complete":
+            divisor = 1.0 if solver.adaptive else 2.0**solver.order - 1.0
+            error = {name: value / divisor for name, value in _difference(network, raw, finer).items()}
+            raw = finer
+    settings = {"duration": duration, "solver": used.describe(), "initial_speed": initial_speed, "sample_step": sample_step}
+    return _response(scene, network, assembly, raw, settings | {"initial": dict(initial or {})}, error)
+
+
+def initial_values(network: Network, speed: float, given: Mapping[str, float]) -> dict[str, dict[str, float]]:
+    """Forward angles, speeds and states at t = 0."""
+    angles = {body.name: 0.0 for body in network.bodies}
+    speeds = {body.name: body.sense * body.ratio * speed for body in network.bodies}
+    states = {state.name: state.initial for state in network.states}
+    bodies = {body.name: body for body in network.bodies}
+    for name, value in given.items():
+        place, _, quantity = name.rpartition(".")
+        body = bodies.get(network.places.get(place, place))
+        if name in states:
+            states[name] = float(value)
+        elif body is not None and quantity == "angle":
+            angles[body.name] = body.sense * float(value)
+        elif body is not None and quantity == "speed":
+            speeds[body.name] = body.sense * float(value)
+        else:
+            known = [f"{body.name}.angle/.speed" for body in network.bodies] + list(states)
+            raise unknown_place("initial value", name, known)
+    return {"angles": angles, "speeds": speeds, "states": states}
+
+
+def run_moment(network: Network, raw: RawRun) -> Moment:
+    """All moments of a run at once, as arrays."""
+    return network.moment(raw.times, raw.angles, raw.speeds, raw.states)
+
+
+def read_over(function: Callable[[Moment], Value], moment: Moment) -> FloatArray:
+    """A quantity over all moments; point by point where a law does not take arrays."""
+    shape = np.shape(moment.time)
+    try:
+        return np.broadcast_to(np.asarray(function(moment), float), shape).copy()
+    except (TypeError, ValueError):
+        pass
+
+    def pick(values: Mapping[str, Value], k: int) -> dict[str, float]:
+        return {name: float(value[k]) for name, value in values.items()}
+
+    points = (
+        Moment(
+            time=float(moment.time[k]),
+            angles=pick(moment.angles, k),
+            speeds=pick(moment.speeds, k),
+            states=pick(moment.states, k),
+        )
+        for k in range(shape[0])
+    )
+    return np.array([float(function(point)) for point in points])
+
+
+def _response(
+    scene: Scene, network: Network, assembly: Assembly, raw: RawRun, settings: dict[str, Any], error: dict[str, float]
+) -> Response:
+    moment = run_moment(network, raw)
+    values: dict[str, FloatArray] = {}
+    units: dict[str, str] = {}
+    docs: dict[str, str] = {}
+    slopes: dict[str, str] = {}
+    senses = {body.name: body.sense for body in network.bodies}
+    for channel in network.channels:
+        values[channel.name] = read_over(channel.read, moment)
+        units[channel.name], docs[channel.name] = channel.unit, channel.doc
+        if channel.slope:
+            slopes[channel.name] = channel.slope
+    try:
+        rates = network.accelerations(moment)
+        rates = {name: np.broadcast_to(np.asarray(value, float), raw.times.shape).copy() for name, value in rates.items()}
+    except (TypeError, ValueError):
+        rates = {name: read_over(lambda m, n=name: network.accelerations(m)[n], moment) for name in [*senses, *raw.states]}  # type: ignore[misc]
+    for place, node in network.places.items():
+        if node in senses and f"{place}.speed" in values:
+            name = f"{place}.acceleration"
+            values[name] = senses[node] * rates[node]
+            units[name], docs[name] = "rad/s^2", f"angular acceleration of {place}, true sense"
+    for state in network.states:
+        name = f"{state.name}.rate"
+        values[name], units[name], docs[name] = rates[state.name], f"{state.unit}/s", f"rate of {state.name}"
+        slopes[state.name] = name
+    slopes = {name: slope for name, slope in slopes.items() if slope in values}
+    status = raw.status if raw.status == "complete" else f"cancelled at t = {raw.times[-1]:.6g} s; the histories end there"
+    return Response(
+        scene=scene,
+        status=status,
+        settings=settings,
+        times=raw.times,
+        values=values,
+        units=units,
+        docs=docs,
+        slopes=slopes,
+        steps=raw.steps,
+        rejected=raw.rejected,
+        seconds=raw.seconds,
+        lowering={item.element: item.how for item in assembly.lowered},
+        error=error,
+    )
+
+
+def _difference(network: Network, coarse: RawRun, fine: RawRun) -> dict[str, float]:
+    """Largest difference of two runs over the largest value, per body (angle and speed) and state.
+
+    Compared at the times of the coarser run: with half the step they are times of both.
+    """
+    moment = run_moment(network, fine)
+    slopes = {name: read_over(lambda m, n=name: network.accelerations(m)[n], moment) for name in [*fine.speeds, *fine.states]}  # type: ignore[misc]
+    result = {}
+
+    def compare(name: str, rough: FloatArray, good: FloatArray, slope: FloatArray) -> None:
+        reference = TimeHistory(name, "", fine.times, good, slope).at(coarse.times)
+        size = float(np.max(np.abs(good)))
+        result[name] = float(np.max(np.abs(rough - reference))) / size if size > 0.0 else 0.0
+
+    for name in fine.angles:
+        compare(f"{name}.angle", coarse.angles[name], fine.angles[name], fine.speeds[name])
+        compare(f"{name}.speed", coarse.speeds[name], fine.speeds[name], slopes[name])
+    for name in fine.states:
+        compare(name, coarse.states[name], fine.states[name], slopes[name])
+    return result

@@ -1,0 +1,251 @@
+"""Scenes to and from TOML and JSON, every number with its unit.  No code is executed from a file."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import json
+import os
+import pkgutil
+import tomllib
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from hdrive_mbs import components, effects, flexsplines, loads, motors
+from hdrive_mbs.components.component import Component
+from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import FileFormatError, HdriveError, UnitError, unknown_place
+from hdrive_mbs.quantities import Described, Quantity
+from hdrive_mbs.scene import PlacedEffect, Scene
+from hdrive_mbs.units import to_si
+from hdrive_mbs.writing import write_text
+
+FORMAT = "hdrive-mbs scene 1"
+
+
+# -- out ------------------------------------------------------------------------------------------
+
+
+def scene_to_dict(scene: Scene) -> dict[str, Any]:
+    """Plain data of a scene.  Raises FileFormatError when it holds Python functions."""
+    document: dict[str, Any] = {"format": FORMAT, "name": scene.name}
+    if scene.notes:
+        document["notes"] = scene.notes
+    document["connections"] = [list(chain) for chain in scene.connections]
+    document["parts"] = {name: _plain(part, name) for name, part in scene.parts.items()}
+    if scene.effects:
+        document["effects"] = {e.name: {"at": e.at, **_plain(e.effect, e.name)} for e in scene.effects}
+    return document
+
+
+def _plain(item: Described, where: str) -> dict[str, Any]:
+    result: dict[str, Any] = {"type": type(item).__name__}
+    for field in dataclasses.fields(item):
+        value = getattr(item, field.name)
+        path = f"{where}.{field.name}"
+        if value is None:
+            continue
+        quantity: Quantity | None = field.metadata.get("quantity")
+        if quantity is not None and quantity.sequence:
+            result[field.name] = {"unit": quantity.unit, "values": list(value)}
+        elif quantity is not None:
+            result[field.name] = value if quantity.unit == "1" else f"{value!r} {quantity.unit}"
+        elif isinstance(value, Described):
+            result[field.name] = _plain(value, path)
+        elif isinstance(value, (str, bool, int, float)):
+            result[field.name] = value
+        elif isinstance(value, tuple) and all(isinstance(entry, Described) for entry in value):
+            result[field.name] = [_plain(entry, f"{path}[{k}]") for k, entry in enumerate(value)]
+        elif isinstance(value, tuple) and all(isinstance(entry, (str, bool, int, float)) for entry in value):
+            result[field.name] = list(value)
+        else:
+            raise FileFormatError(
+                f"{path} is a Python {type(value).__name__}, which a scene file cannot hold. "
+                "Write the law as a class (one file, see StiffnessLaw, LoadLaw, Effect), or keep the scene in a .py file."
+            )
+    return result
+
+
+def save_scene(scene: Scene, path: str | os.PathLike[str]) -> Path:
+    """Write a scene as .toml or .json, whole or not at all."""
+    import tomli_w
+
+    suffix = Path(path).suffix.lower()
+    document = scene_to_dict(scene)
+    if suffix == ".toml":
+        return write_text(path, tomli_w.dumps(document))
+    if suffix == ".json":
+        return write_text(path, json.dumps(document, indent=2) + "\n")
+    raise FileFormatError(f"{path}: a scene file ends in .toml or .json.")
+
+
+# -- in -------------------------------------------------------------------------------------------
+
+
+def load_scene(path: str | os.PathLike[str], types: Iterable[type[Described]] = ()) -> Scene:
+    """Read a scene from .toml or .json.
+
+    types : classes of a user's own that the file names (those already imported are found anyway)
+
+    Raises FileFormatError, UnitError or ParameterError with the path of the entry at fault.
+    """
+    source = Path(path)
+    try:
+        text = source.read_bytes().decode("utf-8")
+    except OSError as error:
+        raise FileFormatError(f"{path}: cannot be read ({error.strerror}).") from error
+    except UnicodeDecodeError as error:
+        raise FileFormatError(f"{path} is not a text file in UTF-8 ({error}).") from error
+    try:
+        document = json.loads(text) if source.suffix.lower() == ".json" else tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise FileFormatError(f"{path} cannot be parsed: {error}") from error
+    try:
+        return scene_from_dict(document, types)
+    except HdriveError as error:
+        raise type(error)(f"{path}: {error}") from error
+
+
+def scene_from_dict(document: Any, types: Iterable[type[Described]] = ()) -> Scene:
+    """A scene from plain data (the inverse of scene_to_dict)."""
+    if not isinstance(document, Mapping) or document.get("format") != FORMAT:
+        found = document.get("format") if isinstance(document, Mapping) else type(document).__name__
+        raise FileFormatError(f"not a scene: 'format' must be {FORMAT!r}, found {found!r}.")
+    allowed = {"format", "name", "notes", "connections", "parts", "effects"}
+    for key in document:
+        if key not in allowed:
+            raise FileFormatError(f"unknown entry {key!r}; a scene has {', '.join(sorted(allowed))}.")
+    known = _known_types(types)
+    parts = {name: _build(entry, f"parts.{name}", Component, known) for name, entry in _mapping(document, "parts").items()}
+    placed = []
+    for name, entry in _mapping(document, "effects", optional=True).items():
+        inner = dict(_as_mapping(entry, f"effects.{name}"))
+        at = inner.pop("at", None)
+        if not isinstance(at, str):
+            raise FileFormatError(f"effects.{name}: 'at' must name a place.")
+        placed.append((name, _build(inner, f"effects.{name}", Effect, known), at))
+    chains = document.get("connections", [])
+    if not isinstance(chains, list) or not all(isinstance(c, list) and all(isinstance(p, str) for p in c) for c in chains):
+        raise FileFormatError("connections: must be a list of lists of places.")
+    notes = document.get("notes", "")
+    name = document.get("name")
+    if not isinstance(name, str) or not isinstance(notes, str):
+        raise FileFormatError("name and notes: must be texts.")
+    scene = Scene(name=name, parts=parts, connections=chains, notes=notes)  # type: ignore[arg-type]
+    for effect_name, effect, at in placed:
+        scene = scene.with_effect(effect, at=at, name=effect_name)  # type: ignore[arg-type]
+    return scene
+
+
+def _as_mapping(entry: Any, where: str) -> Mapping[str, Any]:
+    if not isinstance(entry, Mapping):
+        raise FileFormatError(f"{where}: must be a table, found {type(entry).__name__}.")
+    return entry
+
+
+def _mapping(document: Mapping[str, Any], key: str, optional: bool = False) -> Mapping[str, Any]:
+    if key not in document:
+        if optional:
+            return {}
+        raise FileFormatError(f"{key!r} is missing.")
+    return _as_mapping(document[key], key)
+
+
+def _known_types(extra: Iterable[type[Described]]) -> dict[str, type[Described]]:
+    for package in (components, effects, flexsplines, loads, motors):
+        for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
+            importlib.import_module(module.name)
+    found: dict[str, type[Described]] = {}
+    stack: list[type[Described]] = [Described]
+    while stack:
+        for child in stack.pop().__subclasses__():
+            found[child.__name__] = child
+            stack.append(child)
+    return found | {kind.__name__: kind for kind in extra}
+
+
+def _build(entry: Any, where: str, base: type[Described], known: Mapping[str, type[Described]]) -> Described:
+    data = dict(_as_mapping(entry, where))
+    name = data.pop("type", None)
+    kinds = {key: kind for key, kind in known.items() if issubclass(kind, base)}
+    kind = kinds.get(name) if isinstance(name, str) else None
+    if kind is None:
+        raise unknown_place("type", str(name), sorted(kinds), f"{where}: this entry")
+    fields = {field.name: field for field in dataclasses.fields(kind)}
+    values: dict[str, Any] = {}
+    for key, value in data.items():
+        path = f"{where}.{key}"
+        if key not in fields:
+            raise FileFormatError(f"{path}: unknown entry. {kind.__name__} has: {', '.join(fields)}.")
+        values[key] = _value(value, path, fields[key].metadata.get("quantity"), known)
+    missing = [
+        field.name
+        for field in fields.values()
+        if field.name not in values and field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
+    ]
+    if missing:
+        raise FileFormatError(f"{where}: {', '.join(missing)} of {kind.__name__} missing.")
+    return kind(**values)
+
+
+def _value(value: Any, path: str, quantity: Quantity | None, known: Mapping[str, type[Described]]) -> Any:
+    if quantity is None:
+        if isinstance(value, Mapping):
+            return _build(value, path, Described, known)
+        if isinstance(value, list):
+            return tuple(_value(item, f"{path}[{k}]", None, known) for k, item in enumerate(value))
+        return value
+    if quantity.sequence:
+        return _sequence(value, path, quantity)
+    if isinstance(value, str):
+        return to_si(value, quantity.unit, path)
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise FileFormatError(f"{path} = {value!r}: must be a number with a unit, like '1.0 {quantity.unit}'.")
+    if quantity.unit != "1":
+        raise UnitError(f"{path} = {value!r} has no unit; write it as text, like '{value!r} {quantity.unit}'.")
+    return float(value)
+
+
+def _sequence(value: Any, path: str, quantity: Quantity) -> tuple[float, ...]:
+    if not isinstance(value, Mapping) or set(value) != {"unit", "values"} or not isinstance(value["values"], list):
+        raise FileFormatError(f"{path}: must be a table {{ unit = '{quantity.unit}', values = [...] }}.")
+    for index, item in enumerate(value["values"]):
+        if isinstance(item, bool) or not isinstance(item, (int, float)):
+            raise FileFormatError(f"{path}.values[{index}] = {item!r}: must be a number.")
+    if not isinstance(value["unit"], str):
+        raise UnitError(f"{path}.unit = {value['unit']!r}: must be a text like '{quantity.unit}'.")
+    if value["unit"] == quantity.unit:
+        return tuple(float(item) for item in value["values"])
+    return tuple(to_si(f"{float(item)!r} {value['unit']}", quantity.unit, path) for item in value["values"])
+
+
+def parse_setting(scene: Scene, text: str) -> tuple[str, Any]:
+    """``motor.inertia=2e-3`` or ``motor.inertia=20 g*m^2`` -> path and SI value.
+
+    A bare number is SI.  Raises FileFormatError without '=' and PlaceError for an unknown path.
+    """
+    path, sign, value = text.partition("=")
+    path = path.strip()
+    if not sign or not path:
+        raise FileFormatError(f"{text!r}: write PATH=VALUE, like motor.inertia=2e-3.")
+    parameters = scene.parameters()
+    if path not in parameters:
+        return path, _plain_setting(value.strip())
+    try:
+        return path, float(value)
+    except ValueError:
+        return path, to_si(value, parameters[path].unit, path)
+
+
+def _plain_setting(value: str) -> Any:
+    words = {"true": True, "false": False}
+    if value.lower() in words:
+        return words[value.lower()]
+    try:
+        return float(value)
+    except ValueError:
+        return value
+
+
+__all__ = ["FORMAT", "PlacedEffect", "load_scene", "parse_setting", "save_scene", "scene_from_dict", "scene_to_dict"]
