@@ -44,6 +44,9 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "engine.assembly": ("LoweringWarning",),
     "analysis.result": ("Result", "load"),
     "analysis.time_response": ("Response", "simulate"),
+    "analysis.operating_point": ("OperatingPoint", "operating_point"),
+    "analysis.modes": ("Modes", "modes"),
+    "analysis.campbell": ("Campbell", "torsional_campbell"),
 }  # fmt: skip
 _MODULE_OF = {name: module for module, exported in _WHERE.items() for name in exported}
 

@@ -254,7 +254,7 @@ def _interp(x: Any, xp: Sequence[float], fp: Sequence[float], left: Any = None, 
 
     def piece(i: int) -> Expression:
         slope = (ys[i + 1] - ys[i]) / (xs[i + 1] - xs[i])
-        return ys[i] + slope * (u - xs[i])
+        return u * float(slope) + float(ys[i] - slope * xs[i])
 
     def tree(first: int, last: int) -> Expression:
         if last - first == 1:
@@ -378,7 +378,8 @@ def evaluate(expression: Expression, values: Mapping[str, Value]) -> Value:
 def _rebuild(operation: str, arguments: list[Value]) -> Value:
     if any(isinstance(item, Expression) for item in arguments):
         wrapped = [_wrap(item) for item in arguments]
-        return _BUILD.get(operation, lambda *items: _node(operation, *items))(*wrapped)
+        build = _BUILD.get(operation)
+        return build(*wrapped) if build is not None else _node(operation, *wrapped)
     result = _NUMERIC[operation](*arguments)
     return result * 1.0 if result.dtype == np.bool_ else result
 
@@ -407,6 +408,7 @@ def derivative(expression: Expression, name: str) -> Expression:
 
 
 Rule = Callable[..., Any]
+"""Derivative of one operation from (node, *arguments, *their derivatives)."""
 
 
 def _differentiate(node: Expression, visit: Callable[[Expression], Expression], name: str) -> Expression:

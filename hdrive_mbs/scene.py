@@ -80,10 +80,7 @@ class Scene:
         draft = start_draft(self.parts, self.connections)
         for name, part in self.parts.items():
             part.build(name, draft)
-        if effect.acts_on == "body":
-            draft.body(at, type(effect).__name__)
-        elif effect.acts_on == "connection":
-            draft.connection(at, type(effect).__name__)
+        effect.apply(draft, at, "checked")
 
     def without(self, name: str) -> Scene:
         """A copy without the effect (or part) of that name."""

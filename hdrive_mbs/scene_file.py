@@ -119,12 +119,12 @@ def scene_from_dict(document: Any, types: Iterable[type[Described]] = ()) -> Sce
     known = _known_types(types)
     parts = {name: _build(entry, f"parts.{name}", Component, known) for name, entry in _mapping(document, "parts").items()}
     placed = []
-    for name, entry in _mapping(document, "effects", optional=True).items():
-        inner = dict(_as_mapping(entry, f"effects.{name}"))
+    for effect_name, entry in _mapping(document, "effects", optional=True).items():
+        inner = dict(_as_mapping(entry, f"effects.{effect_name}"))
         at = inner.pop("at", None)
         if not isinstance(at, str):
-            raise FileFormatError(f"effects.{name}: 'at' must name a place.")
-        placed.append((name, _build(inner, f"effects.{name}", Effect, known), at))
+            raise FileFormatError(f"effects.{effect_name}: 'at' must name a place.")
+        placed.append((effect_name, _build(inner, f"effects.{effect_name}", Effect, known), at))
     chains = document.get("connections", [])
     if not isinstance(chains, list) or not all(isinstance(c, list) and all(isinstance(p, str) for p in c) for c in chains):
         raise FileFormatError("connections: must be a list of lists of places.")

@@ -83,7 +83,7 @@ class Result:
         packed = np.frombuffer(json.dumps(document).encode(), dtype=np.uint8)
 
         def write(file: BinaryIO) -> None:
-            np.savez_compressed(file, head=packed, **arrays)
+            np.savez_compressed(file, allow_pickle=False, head=packed, **arrays)
 
         return write_whole(path, write)
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import exudyn as exu
-from exudyn import itemInterface as item  # noqa: N813
 import numpy as np
+from exudyn import itemInterface as item  # noqa: N813
 
 from hdrive_mbs.engine.guard import check_connector, check_coupling
 from hdrive_mbs.engine.records import CoupledRecord, ScalarRecord, make_record

@@ -37,6 +37,36 @@ class StiffnessLaw(Described):
         """Half the lost motion [rad]: the torque is zero for \\|phi\\| up to here."""
         return 0.0
 
+    def check_restoring(self, largest_twist: float = 0.1) -> None:
+        """Raise LawError where a law that claims to be restoring gives M(phi)*phi < 0, or no number.
+
+        Looks at 2 x 300 twists between 1e-7 rad and largest_twist [rad], each sign, spaced both
+        evenly and by magnitude; -1e-9 of the largest torque counts as zero (rounding).
+        """
+        if not self.restoring:
+            return
+        sizes = np.unique(np.concatenate((np.geomspace(1e-7, largest_twist, 200), np.linspace(1e-7, largest_twist, 100))))
+        twists = np.concatenate((-sizes[::-1], sizes))
+        torques = self._sampled(twists)
+        if not np.isfinite(torques).all():
+            first = int(np.argmin(np.isfinite(torques)))
+            raise LawError(f"{self.describe()} gives {torques[first]} N m at a twist of {twists[first]:.4g} rad: not a finite torque.")
+        pull = torques * np.sign(twists)
+        worst = int(np.argmin(pull))
+        if pull[worst] < -1e-9 * float(np.max(np.abs(torques))):
+            raise LawError(
+                f"{self.describe()} claims to be restoring but gives {torques[worst]:.4g} N m at a twist of "
+                f"{twists[worst]:.4g} rad: it must not pull away from zero twist. Correct the law, or set "
+                f"'restoring = False' in {type(self).__name__} if it is meant."
+            )
+
+    def _sampled(self, twists: FloatArray) -> FloatArray:
+        """Torques at many twists, also of a law that takes single numbers only."""
+        try:
+            return np.asarray(self.torque(twists), float) + 0.0 * twists
+        except (TypeError, ValueError):
+            return np.array([float(self.torque(float(twist))) for twist in twists])
+
     def stiffness(self, twist: Value) -> Value:
         """Tangent stiffness dM/dphi [N m/rad], by differentiation of the law."""
         return gradient(self.torque)(twist)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from hdrive_mbs.errors import PlaceError, SceneError, unknown_place
 from hdrive_mbs.expression import Value
-from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, KinematicTerm, StateRate
+from hdrive_mbs.network.elements import AppliedTorque, Claim, Connection, Element, KinematicTerm, StateRate
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Body, Channel, Motion, Network, State
 
@@ -23,7 +23,8 @@ class ConnectionDraft:
     """A connection that effects may still change.
 
     ``law(moment, stretch, rate)`` is the constitutive law; ``parallel`` holds torques that act
-    beside it; ``terms`` are kinematic errors that add to the stretch.
+    beside it; ``terms`` are kinematic errors that add to the stretch; ``bodies`` names the body at
+    each flange.
     """
 
     name: str
@@ -32,10 +33,21 @@ class ConnectionDraft:
     parallel: list[tuple[str, Torque]] = field(default_factory=list)
     terms: list[KinematicTerm] = field(default_factory=list)
     bodies: dict[str, str] = field(default_factory=dict)
+    claims: list[Claim] = field(default_factory=list)
 
     def wrap(self, change: Callable[[Torque], Torque]) -> None:
         """Replace the law by ``change(law)``."""
         self.law = change(self.law)
+
+    def claim(self, name: str, torque: Torque, stored: Callable[[Moment], Value] | None = None) -> None:
+        """Promise that a torque inside this connection is dissipative (checked when the scene is assembled)."""
+
+        def power(moment: Moment) -> Value:
+            whole = self.build()
+            rate = whole.rate(moment)
+            return torque(moment, whole.stretch(moment), rate) * rate
+
+        self.claims.append(Claim(name, power, stored))
 
     def build(self) -> Connection:
         law, parallel = self.law, tuple(torque for _, torque in self.parallel)
@@ -46,7 +58,7 @@ class ConnectionDraft:
                 torque = torque + extra(moment, stretch, rate)
             return torque
 
-        return Connection(self.name, dict(self.factors), total if parallel else law, tuple(self.terms))
+        return Connection(self.name, dict(self.factors), total if parallel else law, tuple(self.terms), parts=tuple(self.claims))
 
 
 @dataclass(frozen=True)
@@ -85,15 +97,26 @@ class Draft:
             raise PlaceError(f"{asked_by} acts on a rotating body, but {place!r} is a connection. Bodies: {', '.join(known)}.")
         raise unknown_place("body", place, known)
 
-    def connection(self, place: str, asked_by: str = "This") -> ConnectionDraft:
-        """The connection of that name (a shaft, the mesh of a gear).
+    def connection(self, place: str, asked_by: str = "This", flanges: tuple[str, ...] = ()) -> ConnectionDraft:
+        """The connection of that name (a shaft, the mesh of a gear), which must have these flanges.
 
-        Raises PlaceError when the place does not exist or is not a connection.
+        Raises PlaceError when the place does not exist, is not a connection or lacks a flange.
         """
+
+        def fits(draft: ConnectionDraft) -> bool:
+            return set(flanges) <= set(draft.bodies)
+
         name = self._aliases.get(place, place)
+        aliases = [alias for alias, owner in self._aliases.items() if fits(self._connections[owner])]
+        known = [*(key for key, draft in self._connections.items() if fits(draft)), *aliases]
         if name in self._connections:
-            return self._connections[name]
-        known = [*self._connections, *self._aliases]
+            found = self._connections[name]
+            if fits(found):
+                return found
+            raise PlaceError(
+                f"{asked_by} needs a connection with the flanges {', '.join(flanges)}, but {place!r} has "
+                f"{', '.join(found.bodies) or 'none'}. Such connections: {', '.join(known) or 'none'}."
+            )
         if place in self._flanges:
             raise PlaceError(f"{asked_by} acts on a connection, but {place!r} is a body. Connections: {', '.join(known)}.")
         raise unknown_place("connection", place, known)
@@ -111,9 +134,32 @@ class Draft:
         self._aliases |= dict.fromkeys(aliases, name)
         return draft
 
-    def add_torque(self, name: str, coordinate: str, torque: Callable[[Moment], Value], *, dissipative: bool = False) -> None:
-        """A torque on a coordinate, positive in its forward sense."""
-        self._elements.append(AppliedTorque(name, coordinate, torque, dissipative))
+    def add_torque(
+        self,
+        name: str,
+        coordinate: str,
+        torque: Callable[[Moment], Value],
+        *,
+        dissipative: bool = False,
+        stored: Callable[[Moment], Value] | None = None,
+    ) -> None:
+        """A torque on a coordinate, positive in its forward sense; ``stored`` is the energy in its states."""
+        self._elements.append(AppliedTorque(name, coordinate, torque, dissipative, stored))
+
+    def add_relative_torque(self, name: str, factors: dict[str, float], torque: Torque, *, dissipative: bool = False) -> None:
+        """A torque(moment, x, dx/dt) that resists along  x = sum(f_i q_i), with its reactions; no twist channels."""
+        self._elements.append(Connection(name, dict(factors), torque, (), dissipative))
+
+    def motor_torque(self, place: str, asked_by: str = "This") -> Callable[[Moment], Value]:
+        """The torque ``<place>.torque`` that a part puts on its body.
+
+        Raises PlaceError when there is none (a motor with a prescribed motion has none).
+        """
+        torques = {element.name: element.torque for element in self._elements if isinstance(element, AppliedTorque)}
+        if f"{place}.torque" in torques:
+            return torques[f"{place}.torque"]
+        known = [name.removesuffix(".torque") for name in torques if name.endswith(".torque")]
+        raise PlaceError(f"{asked_by} needs a part with a torque law, but {place!r} has none. Such parts: {', '.join(known) or 'none'}.")
 
     def add_state(self, name: str, *, unit: str, initial: float, rate: Callable[[Moment], Value]) -> str:
         """A first-order state dz/dt = rate(moment); returns its (unique) name."""
@@ -162,8 +208,8 @@ class Draft:
     def _body_channels(self, prescribed: dict[str, Motion]) -> list[Channel]:
         channels = []
         for place, node_name in self._flanges.items():
-            if node_name == "ground":
-                continue
+            if node_name == "ground" or (place != node_name and place.endswith((".a", ".b"))):
+                continue  # the ends of a shaft are the bodies that they are joined to
             node = self._nodes[node_name]
             channels += [
                 Channel(f"{place}.angle", "rad", f"angle of {place}, true sense", _angle(node), f"{place}.speed"),

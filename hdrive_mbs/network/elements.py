@@ -26,23 +26,48 @@ class Element(Protocol):
 
 
 @dataclass(frozen=True)
-class KinematicTerm:
-    """A term e(q) that adds to a stretch: power-consistent, because torque and rate use e'(q)."""
+class Claim:
+    """What a law promises that calls itself dissipative: power taken - d(stored)/dt >= 0 at every moment.
 
-    coordinate: str
+    power : power that it takes from the coordinates [W]
+    stored : energy that it holds in states or angles [J] (None: nothing)
+    """
+
+    name: str
+    power: Callable[[Moment], Value]
+    stored: Callable[[Moment], Value] | None = None
+
+
+@dataclass(frozen=True)
+class KinematicTerm:
+    """A term e(a), a = sum(f_i q_i), that adds to a stretch: power-consistent, because torque and rate use e'(a)."""
+
+    factors: Mapping[str, float]
     error: Callable[[Value], Value]
 
-    def slope(self, angle: Value) -> Value:
-        """de/dq by differentiation of the recorded law."""
-        return gradient(self.error)(angle)
+    def value(self, moment: Moment) -> Value:
+        """e(a) [rad]."""
+        return self.error(self._angle(moment))
+
+    def slope(self, moment: Moment) -> Value:
+        """de/da by differentiation of the recorded law."""
+        return gradient(self.error)(self._angle(moment))
+
+    def rate(self, moment: Moment) -> Value:
+        """de/dt [rad/s]."""
+        return self.slope(moment) * sum(factor * moment.speed(name) for name, factor in self.factors.items())
+
+    def _angle(self, moment: Moment) -> Value:
+        return sum(factor * moment.angle(name) for name, factor in self.factors.items())
 
 
 @dataclass(frozen=True)
 class Connection:
-    """A torsional element along a stretch  x = sum(f_i q_i) + sum(e_j(q_j)).
+    """A torsional element along a stretch  x = sum(f_i q_i) + sum(e_j).
 
     ``torque(moment, x, dx/dt)`` is positive when it resists a positive stretch; by virtual work the
     torque on coordinate i is -torque * dx/dq_i, so power is conserved for every ratio f_i.
+    ``parts`` are the claims of laws that act inside it (see ConnectionDraft.claim).
     """
 
     name: str
@@ -50,16 +75,21 @@ class Connection:
     torque: Callable[[Moment, Value, Value], Value]
     terms: tuple[KinematicTerm, ...] = ()
     dissipative: bool = False
+    parts: tuple[Claim, ...] = ()
+
+    def claims(self) -> tuple[Claim, ...]:
+        """What the element and the laws inside it promise."""
+        return (Claim(self.name, self.power), *self.parts) if self.dissipative else self.parts
 
     def stretch(self, moment: Moment) -> Value:
         """Elastic stretch x [rad]."""
         linear = sum(factor * moment.angle(name) for name, factor in self.factors.items())
-        return linear + sum(term.error(moment.angle(term.coordinate)) for term in self.terms)
+        return linear + sum(term.value(moment) for term in self.terms)
 
     def rate(self, moment: Moment) -> Value:
         """Rate of stretch dx/dt [rad/s]."""
         linear = sum(factor * moment.speed(name) for name, factor in self.factors.items())
-        return linear + sum(term.slope(moment.angle(term.coordinate)) * moment.speed(term.coordinate) for term in self.terms)
+        return linear + sum(term.rate(moment) for term in self.terms)
 
     def value(self, moment: Moment) -> Value:
         """Torque of the element [N m]."""
@@ -69,8 +99,9 @@ class Connection:
         torque = self.value(moment)
         result: dict[str, Value] = {name: -factor * torque for name, factor in self.factors.items()}
         for term in self.terms:
-            slope = term.slope(moment.angle(term.coordinate))
-            result[term.coordinate] = result.get(term.coordinate, 0.0) - slope * torque
+            slope = term.slope(moment)
+            for name, factor in term.factors.items():
+                result[name] = result.get(name, 0.0) - factor * slope * torque
         return result
 
     def power(self, moment: Moment) -> Value:
@@ -86,6 +117,11 @@ class AppliedTorque:
     coordinate: str
     torque: Callable[[Moment], Value]
     dissipative: bool = False
+    stored: Callable[[Moment], Value] | None = None
+
+    def claims(self) -> tuple[Claim, ...]:
+        """What the torque promises."""
+        return (Claim(self.name, self.power, self.stored),) if self.dissipative else ()
 
     def value(self, moment: Moment) -> Value:
         """Torque [N m]."""

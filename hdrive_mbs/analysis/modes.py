@@ -1,0 +1,149 @@
+"""Torsional modes of the linearised scene at an operating point."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.analysis.operating_point import OperatingPoint, operating_point, with_load
+from hdrive_mbs.analysis.result import Result
+from hdrive_mbs.engine.assembly import Assembly, assemble
+from hdrive_mbs.engine.linearisation import LinearSystem, linearise
+from hdrive_mbs.scene import Scene
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_Shapes = TypeVar("_Shapes", FloatArray, ComplexArray)
+
+RIGID = 1e-5
+"""Frequencies below this share of the highest undamped one count as rigid-body motion.
+
+Exudyn differentiates user functions numerically, so an exact zero comes out as about 1e-7 of it.
+"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Modes(Result):
+    """Modes at one operating point.
+
+    bodies : names of the n bodies, in the order of the shapes
+    undamped : natural frequencies without damping [rad/s], ascending, rigid-body motion left out
+    shapes : (n, len(undamped)), angle of each body in true sense, largest entry 1
+    damped : frequencies of the oscillating damped modes [rad/s], ascending; a mode that damping
+        turns into pure decay is not in it (see decay_rates)
+    damping_ratio : -Re(lambda)/|lambda| of each damped mode; negative when it grows
+    damped_shapes : (n, len(damped)), complex
+    decay_rates : -lambda of the non-oscillating motions [1/s], ascending, without rigid-body motion
+    rigid_modes : number of rigid-body motions (1 for a free train, 2 with an open gap)
+    motor_speed : rad/s
+    torques : torque through each connection at the operating point [N m]
+    """
+
+    bodies: tuple[str, ...]
+    undamped: FloatArray
+    shapes: FloatArray
+    damped: FloatArray
+    damping_ratio: FloatArray
+    damped_shapes: ComplexArray
+    decay_rates: FloatArray
+    rigid_modes: int
+    motor_speed: float
+    torques: Mapping[str, float]
+
+    @property
+    def stable(self) -> bool:
+        """Whether no motion grows."""
+        return bool(np.all(self.damping_ratio >= -1e-9) and np.all(self.decay_rates >= -1e-6))
+
+    def columns(self) -> dict[str, np.ndarray]:
+        rows = max(len(self.undamped), len(self.damped))
+
+        def padded(values: FloatArray) -> FloatArray:
+            return np.concatenate([values, np.full(rows - len(values), np.nan)])
+
+        return {
+            "mode": np.arange(1, rows + 1),
+            "undamped [rad/s]": padded(self.undamped),
+            "damped [rad/s]": padded(self.damped),
+            "damping ratio [1]": padded(self.damping_ratio),
+        }
+
+
+def modes(scene: Scene, *, torque: float | None = None, motor_speed: float | None = None) -> Modes:
+    """Linearise on Exudyn at a steady operating point and solve the eigenproblem.
+
+    torque : load torque [N m] in place of the scene's own load at t = 0
+    motor_speed : rad/s; None for the speed at which motor and load balance
+
+    The motor's torque-speed slope counts as damping.  Raises AnalysisError when no steady
+    operating point exists.
+    """
+    point = operating_point(scene, motor_speed=motor_speed, torque=torque)
+    loaded = scene if torque is None else with_load(scene, torque)
+    return modes_at(loaded, assemble(loaded.network()), point)
+
+
+def modes_at(scene: Scene, assembly: Assembly, point: OperatingPoint) -> Modes:
+    """Modes of an assembled scene at a given state (build once, ask for many points)."""
+    system = linearise(assembly, angles=point.angles, speeds=point.speeds, states=point.states)
+    undamped, shapes, rigid = _undamped(system)
+    senses = np.array([body.sense for body in scene.network().bodies], float)
+    damped, ratio, damped_shapes, decay = _damped(system, undamped, rigid)
+    notes = [f"{name} is inside its lost motion or backlash: stiffness 0 there" for name in point.in_gap]
+    notes += [f"{name} sits at a corner of its law: its stiffness differs to either side" for name in point.at_corner]
+    status = "; ".join(["complete", *notes])
+    return Modes(
+        scene=scene,
+        status=status,
+        settings={"motor_speed": point.motor_speed, "torques": dict(point.torques)},
+        bodies=system.bodies,
+        undamped=undamped,
+        shapes=_scaled(senses[:, None] * shapes),
+        damped=damped,
+        damping_ratio=ratio,
+        damped_shapes=_scaled(senses[:, None] * damped_shapes),
+        decay_rates=decay,
+        rigid_modes=rigid,
+        motor_speed=point.motor_speed,
+        torques=point.torques,
+    )
+
+
+def _scaled(shapes: _Shapes) -> _Shapes:
+    """Each column divided by its entry of largest size."""
+    for k in range(shapes.shape[1]):
+        largest = shapes[np.argmax(np.abs(shapes[:, k])), k]
+        if largest != 0.0:
+            shapes[:, k] = shapes[:, k] / largest
+    return shapes
+
+
+def _undamped(system: LinearSystem) -> tuple[FloatArray, FloatArray, int]:
+    """sqrt of the eigenvalues of M^-1 K (K of the bodies only, states at rest)."""
+    values, vectors = np.linalg.eig(np.linalg.solve(system.mass, system.stiffness))
+    order = np.argsort(values.real)
+    values, vectors = values[order].real, vectors[:, order].real
+    frequencies = np.sqrt(np.maximum(values, 0.0))
+    top = float(frequencies.max(initial=0.0))
+    elastic = frequencies > RIGID * top if top > 0.0 else np.zeros(len(values), bool)
+    rigid = int(np.sum(~elastic & (np.abs(values) <= (RIGID * top) ** 2 if top > 0.0 else True)))
+    return frequencies[elastic], vectors[:, elastic], rigid
+
+
+def _damped(system: LinearSystem, undamped: FloatArray, rigid: int) -> tuple[FloatArray, FloatArray, ComplexArray, FloatArray]:
+    n = len(system.bodies)
+    values, vectors = np.linalg.eig(system.matrix)
+    scale = float(np.max(np.abs(values), initial=0.0))
+    oscillating = values.imag > max(RIGID * float(undamped.max(initial=0.0)), 1e-9 * scale)
+    order = np.argsort(values[oscillating].imag)
+    picked, shapes = values[oscillating][order], vectors[:n, oscillating][:, order]
+    real = np.sort(-values[np.abs(values.imag) <= 1e-9 * scale].real)
+    # one zero per rigid-body angle; its partner is zero too unless something drags the motion
+    floor = max(RIGID * float(undamped.max(initial=0.0)), 1e-9 * scale) if rigid else 0.0
+    decay = real[np.abs(real) > floor]
+    return picked.imag, -picked.real / np.abs(picked), shapes, decay

@@ -1,0 +1,215 @@
+"""Steady operating points: where all torques balance while the train turns at constant speed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import brentq
+
+from hdrive_mbs.components.load import Load
+from hdrive_mbs.errors import AnalysisError, PlaceError
+from hdrive_mbs.loads.constant import ConstantTorque
+from hdrive_mbs.network.elements import Connection
+from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.network import Network
+from hdrive_mbs.scene import Scene
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OperatingPoint:
+    """A state in which the train turns steadily.
+
+    motor_speed : speed of the driving motor [rad/s]
+    angles, speeds : forward angle [rad] and speed [rad/s] of each body
+    states : values of the first-order states
+    torques : torque through each connection [N m]
+    in_gap : connections whose tangent stiffness vanishes there (inside lost motion or backlash)
+    at_corner : connections whose stiffness differs between the two sides of the point
+    residual : largest torque that stays unbalanced, over the largest torque
+    """
+
+    motor_speed: float
+    angles: Mapping[str, float]
+    speeds: Mapping[str, float]
+    states: Mapping[str, float]
+    torques: Mapping[str, float]
+    in_gap: tuple[str, ...]
+    at_corner: tuple[str, ...]
+    residual: float
+
+
+def with_load(scene: Scene, torque: float) -> Scene:
+    """The scene with a constant load torque [N m] in place of its load law."""
+    loads = [name for name, part in scene.parts.items() if isinstance(part, Load)]
+    if not loads:
+        raise PlaceError(f"Scene {scene.name!r} has no Load part, so a load torque of {torque:g} N m has no place.")
+    return scene.replacing({f"{loads[-1]}.torque": ConstantTorque(value=torque)})
+
+
+def operating_point(scene: Scene, *, motor_speed: float | None = None, torque: float | None = None) -> OperatingPoint:
+    """Solve for the twists (and states) at which nothing accelerates against its neighbour.
+
+    motor_speed : rad/s; None for the speed at which the motor balances the load (0 when the scene
+        has no such speed)
+    torque : load torque [N m] in place of the scene's load law at t = 0
+
+    The motor's rotor is held at its angle 0 and turns at its speed: the load torque is carried by
+    whatever holds it, so the point exists for any speed.  Loads that depend on time are taken at
+    t = 0.  Raises AnalysisError when the torques cannot be balanced.
+    """
+    if torque is not None:
+        scene = with_load(scene, torque)
+    network = scene.network()
+    if motor_speed is None:
+        motor_speed = _balanced_speed(network)
+    return _balance(network, motor_speed)
+
+
+def _moment(network: Network, speed: float, angles: FloatArray, states: FloatArray) -> Moment:
+    bodies = network.bodies
+    return network.moment(
+        np.float64(0.0),
+        {body.name: angle for body, angle in zip(bodies, angles, strict=True)},
+        {body.name: np.float64(body.sense * body.ratio * speed) for body in bodies},
+        {state.name: value for state, value in zip(network.states, states, strict=True)},
+    )
+
+
+def _balance(network: Network, speed: float) -> OperatingPoint:
+    bodies, states = network.bodies, network.states
+    n = len(bodies)
+    # a train that can turn as a whole is held at its reference body
+    held = next((k for k, body in enumerate(bodies) if abs(body.ratio - 1.0) < 1e-9), 0)
+    matrix = _factor_matrix(network, [body.name for body in bodies])
+    anchored = np.linalg.matrix_rank(matrix, tol=1e-9) == n if len(matrix) else False
+    free = [k for k in range(n) if anchored or k != held]
+    start_states = np.array([state.initial for state in states])
+
+    def split(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        angles = np.zeros(n)
+        angles[free] = x[: len(free)]
+        return angles, x[len(free) :]
+
+    def residual(x: FloatArray) -> FloatArray:
+        angles, values = split(x)
+        total = network.torques(_moment(network, speed, angles, values))
+        rows = [float(total[bodies[k].name]) for k in free] + [float(total[state.name]) for state in states]
+        return np.array(rows)
+
+    best: tuple[float, FloatArray] | None = None
+    for size in (0.0, 0.05, -0.05, 1e-3, -1e-3):
+        guess = np.concatenate([_stretched(network, free, size), start_states])
+        x, error = _newton(residual, guess)
+        if best is None or error < best[0]:
+            best = (error, x)
+        if error < 1e-9:
+            break
+    assert best is not None
+    angles, values = split(best[1])
+    moment = _moment(network, speed, angles, values)
+    torques = {c.name: float(c.value(moment)) for c in _connections(network)}
+    scale = max([abs(v) for v in torques.values()] + [1e-3])
+    if best[0] > 1e-6 * scale:
+        raise AnalysisError(
+            f"No steady operating point at {speed:g} rad/s: {best[0]:.3g} N m stay unbalanced. "
+            "Give another motor_speed or torque, or analyse a simulated state."
+        )
+    sides = {c.name: _one_sided_stiffness(c, moment) for c in _connections(network)}
+    return OperatingPoint(
+        motor_speed=speed,
+        angles={body.name: float(a) for body, a in zip(bodies, angles, strict=True)},
+        speeds={body.name: float(moment.speed(body.name)) for body in bodies},
+        states={state.name: float(v) for state, v in zip(states, values, strict=True)},
+        torques=torques,
+        in_gap=tuple(name for name, (below, above) in sides.items() if below == above == 0.0),
+        at_corner=tuple(name for name, (below, above) in sides.items() if abs(below - above) > 0.01 * max(abs(below), abs(above))),
+        residual=best[0] / scale,
+    )
+
+
+def _connections(network: Network) -> list[Connection]:
+    return [element for element in network.elements if isinstance(element, Connection)]
+
+
+def _factor_matrix(network: Network, names: list[str]) -> FloatArray:
+    return np.array([[c.factors.get(name, 0.0) for name in names] for c in _connections(network)])
+
+
+def _stretched(network: Network, free: list[int], size: float) -> FloatArray:
+    """Angles at which every connection is stretched by ``size`` (least squares)."""
+    connections = _connections(network)
+    if not connections or not free:
+        return np.zeros(len(free))
+    matrix = _factor_matrix(network, [network.bodies[k].name for k in free])
+    return np.asarray(np.linalg.lstsq(matrix, np.full(len(connections), size), rcond=None)[0], float)
+
+
+def _newton(function: Callable[[FloatArray], FloatArray], x: FloatArray, iterations: int = 60) -> tuple[FloatArray, float]:
+    """Newton's method with least-squares steps and halving; returns x and the largest residual."""
+    value = function(x)
+    error = float(np.max(np.abs(value), initial=0.0))
+    for _ in range(iterations):
+        if error < 1e-11:
+            break
+        jacobian = np.empty((len(value), len(x)))
+        for k in range(len(x)):
+            h = 1e-7 * max(abs(x[k]), 1e-2)
+            up, down = x.copy(), x.copy()
+            up[k] += h
+            down[k] -= h
+            jacobian[:, k] = (function(up) - function(down)) / (2.0 * h)
+        step = np.linalg.lstsq(jacobian, -value, rcond=1e-14)[0]
+        for _halving in range(30):
+            trial = x + step
+            new = function(trial)
+            size = float(np.max(np.abs(new), initial=0.0))
+            if np.isfinite(size) and size < error * (1.0 - 1e-4):
+                break
+            step = 0.5 * step
+        else:
+            break
+        x, value, error = trial, new, size
+    return x, error
+
+
+def _one_sided_stiffness(connection: Connection, moment: Moment) -> tuple[float, float]:
+    """Slope of the torque just below and just above the stretch [N m/rad]."""
+    at, h = connection.stretch(moment), 1e-7
+    below, here, above = (float(connection.torque(moment, at + d, 0.0)) for d in (-h, 0.0, h))
+    return (here - below) / h, (above - here) / h
+
+
+def _balanced_speed(network: Network) -> float:
+    """Highest stable speed at which motor and load torques balance, else 0.
+
+    All bodies turn at their ideal ratio, so connections carry no power and the sum of ratio times
+    applied torque vanishes: g(w) = sum(ratio_i T_i(w)) = 0 with falling g.
+    """
+    zeros = np.zeros(len(network.bodies))
+    states = np.array([state.initial for state in network.states])
+    connections = {id(c) for c in _connections(network)}
+
+    def surplus(speed: float) -> float:
+        moment = _moment(network, speed, zeros, states)
+        total = 0.0
+        for element in network.elements:
+            if id(element) in connections:
+                continue
+            for name, value in element.contribution(moment).items():
+                body = next((body for body in network.bodies if body.name == name), None)
+                if body is not None:
+                    total += body.sense * body.ratio * float(value)
+        return total
+
+    speeds = np.concatenate([[0.0], np.geomspace(1e-2, 1e4, 400)])
+    values = np.array([surplus(speed) for speed in speeds])
+    falling = np.nonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))[0]
+    if not len(falling):
+        return 0.0
+    last = int(falling[-1])
+    return float(brentq(surplus, speeds[last], speeds[last + 1], xtol=1e-12, rtol=1e-14))
