@@ -152,6 +152,11 @@ def _mapping(document: Mapping[str, Any], key: str, optional: bool = False) -> M
     return _as_mapping(document[key], key)
 
 
+def all_types() -> dict[str, type[Described]]:
+    """Every described class of the package and of what the caller has imported, by name."""
+    return _known_types(())
+
+
 def _known_types(extra: Iterable[type[Described]]) -> dict[str, type[Described]]:
     for package in (components, effects, flexsplines, loads, motors):
         for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
@@ -248,4 +253,4 @@ def _plain_setting(value: str) -> Any:
         return value
 
 
-__all__ = ["FORMAT", "PlacedEffect", "load_scene", "parse_setting", "save_scene", "scene_from_dict", "scene_to_dict"]
+__all__ = ["FORMAT", "PlacedEffect", "all_types", "load_scene", "parse_setting", "save_scene", "scene_from_dict", "scene_to_dict"]

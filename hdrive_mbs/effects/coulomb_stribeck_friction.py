@@ -23,8 +23,8 @@ class CoulombStribeckFriction(TorqueEffect):
     regularised by tanh.  Leaves out true sticking: below w_0 the body creeps (LuGreFriction holds).
     """
 
-    coulomb: float = parameter("N m", "sliding torque T_C", low=0.0)
-    breakaway: float | None = parameter("N m", "breakaway torque T_S (coulomb if not given)", default=None, low=0.0)
+    coulomb: float = parameter("N m", "sliding torque T_C", low=0.0, high=1e3)
+    breakaway: float | None = parameter("N m", "breakaway torque T_S (coulomb if not given)", default=None, low=0.0, high=1e3)
     stribeck_speed: float = parameter("rad/s", "speed w_S at which the drop has faded", default=1.0, above=0.0)
     smoothing_speed: float = parameter("rad/s", "speed w_0 of the smooth step through zero", default=0.01, above=0.0)
 
@@ -33,7 +33,10 @@ class CoulombStribeckFriction(TorqueEffect):
 
     def check(self) -> None:
         if self.breakaway is not None and self.breakaway < self.coulomb:
-            raise ParameterError(f"CoulombStribeckFriction.breakaway = {self.breakaway:g} N m is below coulomb = {self.coulomb:g} N m.")
+            raise ParameterError(
+                f"CoulombStribeckFriction.breakaway = {self.breakaway:g} N m is below coulomb = {self.coulomb:g} N m; "
+                "leave it out where friction does not drop."
+            )
 
     def torque(self, time: Value, angle: Value, speed: Value) -> Value:
         drop = 0.0 if self.breakaway is None else self.breakaway - self.coulomb

@@ -1,58 +1,71 @@
-"""What every effect offers, and the four shapes that most effects have.
+"""What every effect offers, and the shapes that most effects have.
 
 An effect of a user's own is a frozen dataclass that subclasses one of these and writes one law:
 
 * TorqueEffect: a torque on a body, ``torque(time, angle, speed)``
 * TwistEffect: a torque beside a connection, ``torque(time, twist, rate)``
 * LawEffect: a changed connection, ``changed(law)(twist, rate)``
+* MemoryTorqueEffect, MemoryTwistEffect: the first two with states, ``torque(..., state)`` and ``state_rate(name, ..., state)``
 * Effect: anything else, ``apply(draft, place, name)``
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 from hdrive_mbs.expression import Value
-from hdrive_mbs.network.draft import Draft, Torque
+from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.quantities import Described
 
 
 @dataclass(frozen=True, kw_only=True)
-class Effect(Described):
+class Effect(Described, ABC):
     """A physical effect that can be put at a place of a scene."""
 
     _kind: ClassVar[str] = "effect"
     acts_on: ClassVar[str] = "body"
     """'body' or 'connection': the kind of place the effect needs."""
     dissipative: ClassVar[bool] = False
-    """Whether the effect claims never to deliver power (checked when a scene is assembled)."""
+    """Whether the effect claims never to give back more than it stores (checked when a scene is assembled)."""
     signature: ClassVar[str] = ""
     """What an engineer would see in a record, in words."""
 
+    @abstractmethod
     def apply(self, draft: Draft, place: str, name: str) -> None:
-        """Add the effect to the network.  ``name`` is unique in the scene and prefixes channels."""
-        raise NotImplementedError
+        """Add the effect to the network.  ``name`` is unique in the scene and prefixes channels.
+
+        Raises PlaceError when the place does not exist or is of the wrong kind.
+        """
+
+
+def add_body_torque(
+    effect: Effect,
+    draft: Draft,
+    body: str,
+    name: str,
+    torque: Callable[[Moment], Value],
+    stored: Callable[[Moment], Value] | None = None,
+) -> None:
+    """Put an effect's torque on a body, with its channel ``<name>.torque``."""
+    draft.add_torque(name, body, torque, dissipative=effect.dissipative, stored=stored)
+    draft.add_channel(f"{name}.torque", "N m", f"torque of {name}, positive when driving", torque)
 
 
 @dataclass(frozen=True, kw_only=True)
 class TorqueEffect(Effect):
     """A torque on a body."""
 
+    @abstractmethod
     def torque(self, time: Value, angle: Value, speed: Value) -> Value:
         """Torque [N m] along the forward sense, at a forward angle [rad] and speed [rad/s]."""
-        raise NotImplementedError
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         body = draft.body(place, type(self).__name__).name
-
-        def torque(moment: Moment) -> Value:
-            return self.torque(moment.time, moment.angle(body), moment.speed(body))
-
-        draft.add_torque(name, body, torque, dissipative=self.dissipative)
-        draft.add_channel(f"{name}.torque", "N m", f"torque of {name}, positive when driving", torque)
+        add_body_torque(self, draft, body, name, lambda m: self.torque(m.time, m.angle(body), m.speed(body)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,30 +74,139 @@ class TwistEffect(Effect):
 
     acts_on: ClassVar[str] = "connection"
 
+    @abstractmethod
     def torque(self, time: Value, twist: Value, rate: Value) -> Value:
         """Torque [N m] that resists a positive twist [rad] or rate [rad/s]."""
-        raise NotImplementedError
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         connection = draft.connection(place, type(self).__name__)
-        connection.parallel.append((name, lambda moment, twist, rate: self.torque(moment.time, twist, rate)))
+
+        def torque(moment: Moment, twist: Value, rate: Value) -> Value:
+            return self.torque(moment.time, twist, rate)
+
+        connection.parallel.append((name, torque))
+        if self.dissipative:
+            connection.claim(name, torque)
 
 
 @dataclass(frozen=True, kw_only=True)
 class LawEffect(Effect):
-    """A change of the law of a connection."""
+    """A change of the law of a connection.  What it adds to the old law is what ``dissipative`` is about."""
 
     acts_on: ClassVar[str] = "connection"
 
+    @abstractmethod
     def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:
         """The new torque(twist, rate) made from the old one."""
-        raise NotImplementedError
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
-        def change(old: Torque) -> Torque:
-            def new(moment: Moment, twist: Value, rate: Value) -> Value:
-                return self.changed(lambda x, v: old(moment, x, v))(twist, rate)
+        connection = draft.connection(place, type(self).__name__)
+        old = connection.law
 
-            return new
+        def new(moment: Moment, twist: Value, rate: Value) -> Value:
+            return self.changed(lambda x, v: old(moment, x, v))(twist, rate)
 
-        draft.connection(place, type(self).__name__).wrap(change)
+        def added(moment: Moment, twist: Value, rate: Value) -> Value:
+            return new(moment, twist, rate) - old(moment, twist, rate)
+
+        connection.law = new
+        if self.dissipative:
+            connection.claim(name, added)
+
+
+class _Read(Mapping[str, Value]):
+    """The states of one effect at a moment, by their own names, read when asked for."""
+
+    def __init__(self, names: Mapping[str, str], moment: Moment) -> None:
+        self._names, self._moment = names, moment
+
+    def __getitem__(self, name: str) -> Value:
+        return self._moment.state(self._names[name])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Memory(Effect):
+    """What effects with first-order states share.  All states start at zero."""
+
+    @abstractmethod
+    def states(self) -> Mapping[str, str]:
+        """Name and unit of each state."""
+
+    def stored(self, state: Mapping[str, Value]) -> Value:
+        """Energy [J] held in the states: what a dissipative effect may still give back."""
+        return 0.0
+
+    def _add_states(
+        self, draft: Draft, name: str, rate: Callable[[str, Moment, Mapping[str, Value]], Value]
+    ) -> Callable[[Moment], Mapping[str, Value]]:
+        """One state equation per state; returns the function that reads the states at a moment."""
+        full: dict[str, str] = {}
+
+        def read(moment: Moment) -> Mapping[str, Value]:
+            return _Read(full, moment)
+
+        def equation(own: str) -> Callable[[Moment], Value]:
+            return lambda moment: rate(own, moment, read(moment))
+
+        for own, unit in self.states().items():
+            full[own] = draft.add_state(f"{name}.{own}", unit=unit, initial=0.0, rate=equation(own))
+        return read
+
+
+@dataclass(frozen=True, kw_only=True)
+class MemoryTorqueEffect(_Memory):
+    """A torque on a body that depends on the past through first-order states."""
+
+    @abstractmethod
+    def torque(self, time: Value, angle: Value, speed: Value, state: Mapping[str, Value]) -> Value:
+        """Torque [N m] along the forward sense, at a forward angle [rad] and speed [rad/s]."""
+
+    @abstractmethod
+    def state_rate(self, name: str, time: Value, angle: Value, speed: Value, state: Mapping[str, Value]) -> Value:
+        """Rate of the state of that name [its unit/s]."""
+
+    def apply(self, draft: Draft, place: str, name: str) -> None:
+        body = draft.body(place, type(self).__name__).name
+        read = self._add_states(draft, name, lambda own, m, state: self.state_rate(own, m.time, m.angle(body), m.speed(body), state))
+
+        def torque(moment: Moment) -> Value:
+            return self.torque(moment.time, moment.angle(body), moment.speed(body), read(moment))
+
+        add_body_torque(self, draft, body, name, torque, lambda moment: self.stored(read(moment)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class MemoryTwistEffect(_Memory):
+    """A torque beside a connection that depends on the past through first-order states."""
+
+    acts_on: ClassVar[str] = "connection"
+
+    @abstractmethod
+    def torque(self, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
+        """Torque [N m] that resists a positive twist [rad] or rate [rad/s]."""
+
+    @abstractmethod
+    def state_rate(self, name: str, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
+        """Rate of the state of that name [its unit/s]."""
+
+    def apply(self, draft: Draft, place: str, name: str) -> None:
+        connection = draft.connection(place, type(self).__name__)
+
+        def rate_of(own: str, moment: Moment, state: Mapping[str, Value]) -> Value:
+            whole = connection.build()
+            return self.state_rate(own, moment.time, whole.stretch(moment), whole.rate(moment), state)
+
+        read = self._add_states(draft, name, rate_of)
+
+        def torque(moment: Moment, twist: Value, rate: Value) -> Value:
+            return self.torque(moment.time, twist, rate, read(moment))
+
+        connection.parallel.append((name, torque))
+        if self.dissipative:
+            connection.claim(name, torque, lambda moment: self.stored(read(moment)))

@@ -20,7 +20,7 @@ from hdrive_mbs.engine.guard import check_connector, check_coupling
 from hdrive_mbs.engine.records import CoupledRecord, ScalarRecord, make_record
 from hdrive_mbs.engine.symbolic import SYMBOLIC_VECTOR_LIMIT, connector_function, generic_function
 from hdrive_mbs.expression import Expression, variables
-from hdrive_mbs.expression_code import scalar_function
+from hdrive_mbs.expression.python_code import scalar_function
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Network
 

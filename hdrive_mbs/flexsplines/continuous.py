@@ -102,10 +102,9 @@ class ContinuousStiffness(StiffnessLaw):
         Raises ParameterError where a side does not start from zero at the edge of the gap (to
         1e-6 of its terms: six printed digits).
         """
-        values = dict(zip(_POSITIVE, _about_edge(positive, lost_motion / 2.0, "(17)"), strict=True))
+        values = dict(zip(_POSITIVE, _about_edge(positive, lost_motion / 2.0), strict=True))
         if negative is not None:
-            a, b, c, d = negative
-            values |= zip(_NEGATIVE, _about_edge((-a, b, -c, d), lost_motion / 2.0, "(15)"), strict=True)
+            values |= zip(_NEGATIVE, _about_edge(negative, -lost_motion / 2.0), strict=True)
         return cls(lost_motion=lost_motion, largest_twist=largest_twist, **values)
 
     def polynomial(self, sign: int = 1) -> tuple[float, float, float, float]:
@@ -136,13 +135,17 @@ _POSITIVE = ("edge_stiffness", "quadratic", "cubic")
 _NEGATIVE = ("negative_edge_stiffness", "negative_quadratic", "negative_cubic")
 
 
-def _about_edge(coefficients: Sequence[float], edge: float, equation: str) -> tuple[float, float, float]:
-    """k1, k2, k3 about the edge of the gap; refuses a jump there."""
+def _about_edge(coefficients: Sequence[float], edge: float) -> tuple[float, float, float]:
+    """k1, k2, k3 of the side that starts at this edge of the gap; refuses a jump there.
+
+    With phi = edge + sign(edge) s:  M = sign(edge) (k1 s + k2 s^2 + k3 s^3).
+    """
     a, b, c, d = coefficients
     terms = (a, b * edge, c * edge**2, d * edge**3)
     if abs(sum(terms)) > 1e-6 * max(map(abs, terms)):
         raise ParameterError(
-            f"ContinuousStiffness: the coefficients of {equation} jump by {sum(terms):.4g} N m at the edge of the gap "
-            f"({edge:.6g} rad); the law must start from 0 N m there. With the other coefficients a must be {a - sum(terms):.9g} N m in size."
+            f"ContinuousStiffness: coefficients {tuple(coefficients)} give {sum(terms):.4g} N m at the edge of the gap "
+            f"({edge:.6g} rad); the law must start from 0 N m there. With the same b, c, d take a = {a - sum(terms):.9g} N m."
         )
-    return b + 2.0 * c * edge + 3.0 * d * edge**2, c + 3.0 * d * edge, d
+    sign = -1.0 if edge < 0.0 else 1.0
+    return b + 2.0 * c * edge + 3.0 * d * edge**2, sign * (c + 3.0 * d * edge), d

@@ -12,6 +12,7 @@ from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.flexsplines.law import StiffnessLaw
 from hdrive_mbs.quantities import table
+from hdrive_mbs.tables import check_table, lines
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,16 +29,9 @@ class TableStiffness(StiffnessLaw):
     torques: tuple[float, ...] = table("N m", "torques at these twists, not falling")
 
     def check(self) -> None:
+        check_table(self, "twists", "torques")
         twists, torques = self.twists, self.torques
-        if len(twists) != len(torques) or len(twists) < 2:
-            raise ParameterError(
-                f"TableStiffness has {len(twists)} twists and {len(torques)} torques; it needs the same number of both, at least 2."
-            )
-        for i in range(1, len(twists)):
-            if twists[i] <= twists[i - 1]:
-                raise ParameterError(
-                    f"TableStiffness.twists[{i}] = {twists[i]:g} rad does not rise above twists[{i - 1}] = {twists[i - 1]:g} rad; sort the table."
-                )
+        for i in range(1, len(torques)):
             if torques[i] < torques[i - 1]:
                 raise ParameterError(
                     f"TableStiffness.torques[{i}] = {torques[i]:g} N m is below torques[{i - 1}] = {torques[i - 1]:g} N m; a stiffness "
@@ -76,7 +70,4 @@ class TableStiffness(StiffnessLaw):
         return float(max(0.0, min(-zero.min(), zero.max()))) if len(zero) else 0.0
 
     def torque(self, twist: Value) -> Value:
-        x, y = np.array(self.twists), np.array(self.torques)
-        first, last = (y[1] - y[0]) / (x[1] - x[0]), (y[-1] - y[-2]) / (x[-1] - x[-2])
-        inside = np.interp(twist, x, y)
-        return inside + first * np.minimum(twist - x[0], 0.0) + last * np.maximum(twist - x[-1], 0.0)
+        return lines(twist, self.twists, self.torques)

@@ -7,10 +7,10 @@ A part or effect of a user's own needs only these methods: ``body``, ``connectio
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from hdrive_mbs.errors import PlaceError, SceneError, unknown_place
-from hdrive_mbs.expression import Value
+from hdrive_mbs.expression import Value, gradient
 from hdrive_mbs.network.elements import AppliedTorque, Claim, Connection, Element, KinematicTerm, StateRate
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Body, Channel, Motion, Network, State
@@ -61,6 +61,21 @@ class ConnectionDraft:
         return Connection(self.name, dict(self.factors), total if parallel else law, tuple(self.terms), parts=tuple(self.claims))
 
 
+@dataclass
+class Reading:
+    """A channel looked up by name when the network is finished; call it with a moment."""
+
+    quantity: str
+    asked_by: str
+    hint: str = ""
+    channel: Channel | None = None
+
+    def __call__(self, moment: Moment) -> Value:
+        if self.channel is None:
+            raise SceneError(f"{self.asked_by} reads {self.quantity!r} before the network is finished.")
+        return self.channel.read(moment)
+
+
 @dataclass(frozen=True)
 class Node:
     """A place where flanges are rigidly connected."""
@@ -83,6 +98,9 @@ class Draft:
         self._states: dict[str, State] = {}
         self._elements: list[Element] = []
         self._channels: dict[str, Channel] = {}
+        self._readings: list[Reading] = []
+        self._sources: dict[str, Reading] = {}  # channel made from another channel -> that channel
+        self._finished: tuple[Element, ...] = ()
 
     # -- places ---------------------------------------------------------------------------------
     def body(self, place: str, asked_by: str = "This") -> Node:
@@ -180,6 +198,37 @@ class Draft:
         if name not in self._channels:
             self._channels[name] = Channel(name, unit, doc, read, slope)
 
+    def has_channel(self, name: str) -> bool:
+        """Whether a part has already added the quantity."""
+        return name in self._channels
+
+    def read_channel(self, quantity: str, *, asked_by: str, hint: str = "") -> Reading:
+        """A quantity of the network by name, also one that is added later.
+
+        The network refuses an unknown name with a PlaceError that lists the channels and says the hint.
+        """
+        reading = Reading(quantity, asked_by, hint)
+        self._readings.append(reading)
+        return reading
+
+    def add_reading(self, name: str, quantity: str, change: Callable[[Value], Value], *, unit: str | None = None) -> None:
+        """A channel ``change(quantity)``; its unit is that of the quantity unless given."""
+        source = self.read_channel(quantity, asked_by=repr(name))
+        self.add_channel(name, unit or "", f"reading of {quantity}", lambda moment: change(source(moment)))
+        self._sources[name] = source
+
+    def holding_torque(self, node: Node) -> Callable[[Moment], Value]:
+        """Torque [N m] that keeps a prescribed place on its motion:  J d2(angle)/dt2 - sum of the torques on it."""
+
+        def read(moment: Moment) -> Value:
+            acceleration = gradient(gradient(self._motions[node.name]))(moment.time)
+            total: Value = node.inertia * acceleration + 0.0 * moment.time
+            for element in self._finished:
+                total = total - element.contribution(moment).get(node.name, 0.0)
+            return total
+
+        return read
+
     # -- the end --------------------------------------------------------------------------------
     def finish(self) -> Network:
         """The network, checked for bodies without inertia."""
@@ -202,8 +251,31 @@ class Draft:
         prescribed = {motion.name: motion for motion in motions}
         channels = list(self._body_channels(prescribed)) + list(self._connection_channels(connections))
         channels += self._channels.values()
-        elements: list[Element] = [*connections, *self._elements]
-        return Network(tuple(bodies), tuple(motions), tuple(self._states.values()), tuple(elements), tuple(channels), dict(self._flanges))
+        elements: tuple[Element, ...] = (*connections, *self._elements)
+        self._finished = elements
+        resolved = self._resolved(channels)
+        return Network(tuple(bodies), tuple(motions), tuple(self._states.values()), elements, resolved, dict(self._flanges))
+
+    def _resolved(self, channels: list[Channel]) -> tuple[Channel, ...]:
+        """The channels with those that read others connected to them."""
+        known = {channel.name: channel for channel in channels}
+        for reading in self._readings:
+            if reading.quantity not in known:
+                hint = f" {reading.hint}" if reading.hint else ""
+                raise PlaceError(
+                    f"{reading.asked_by} reads {reading.quantity!r}, which this scene does not have.{hint} Quantities: {', '.join(known)}."
+                )
+        for name in self._sources:
+            path = [name]
+            while path[-1] in self._sources:
+                path.append(self._sources[path[-1]].quantity)
+                if path[-1] in path[:-1]:
+                    raise SceneError(f"{' reads '.join(path)}: a reading cannot depend on itself.")
+            for link in reversed(path[:-1]):
+                known[link] = replace(known[link], unit=known[link].unit or known[self._sources[link].quantity].unit)
+        for reading in self._readings:
+            reading.channel = known[reading.quantity]
+        return tuple(known.values())
 
     def _body_channels(self, prescribed: dict[str, Motion]) -> list[Channel]:
         channels = []

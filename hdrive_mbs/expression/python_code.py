@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from hdrive_mbs.expression import Expression
+from hdrive_mbs.expression.node import Expression
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/", "lt": "<", "le": "<=", "eq": "=="}
 _PREFIX = {"and": "({} and {})", "or": "({} or {})", "not": "(not {})", "neg": "(-{})", "pow": "pow_({}, {})"}

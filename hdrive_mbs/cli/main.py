@@ -1,0 +1,50 @@
+"""``hdrive-mbs``: the commands."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from hdrive_mbs import __version__
+from hdrive_mbs.cli import demo, effects, modes, run, torsion
+from hdrive_mbs.errors import HdriveError
+
+app = typer.Typer(
+    name="hdrive-mbs",
+    help="Harmonic-drive power trains and rotors on the multibody engine Exudyn.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+
+def _version(value: bool) -> None:
+    if value:
+        print(f"hdrive-mbs {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")] = False,
+) -> None:
+    """Harmonic-drive power trains and rotors on the multibody engine Exudyn."""
+
+
+for command in (run.run, modes.modes, torsion.torsion, effects.effects, demo.demo):
+    app.command()(command)
+
+
+def main() -> None:
+    """Run a command; an error that we foresaw is one line on stderr and exit code 2."""
+    try:
+        app()
+    except HdriveError as error:
+        print(f"error: {error}", file=sys.stderr)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

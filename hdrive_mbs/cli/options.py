@@ -1,0 +1,20 @@
+"""Options that several commands share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+ScenePath = Annotated[Path, typer.Argument(metavar="SCENE", help="A .py file with build() -> Scene, or a .toml or .json scene file.")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="PATH=VALUE", help="Change a value, e.g. motor.inertia=2e-3 or 'gear.stiffness.lost_motion=3 arcmin'."),
+]
+Effects = Annotated[
+    list[str] | None,
+    typer.Option("--effect", metavar="TYPE@PLACE:field=value,...", help="Add an effect, e.g. CoulombStribeckFriction@load:coulomb=2."),
+]
+JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write figures as JSON ('-' for stdout).")]
+OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for results and pictures.")]

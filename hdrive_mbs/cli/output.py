@@ -1,0 +1,51 @@
+"""What commands print and write: tables for people, JSON for programs."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hdrive_mbs.writing import write_text
+
+
+def write_json(target: str | None, document: Any) -> None:
+    """Write to a file, or to stdout for ``-``; nothing for None.  NaN and infinity become null."""
+    if target is None:
+        return
+    text = json.dumps(_clean(document), indent=2) + "\n"
+    if target == "-":
+        print(text, end="")
+    else:
+        write_text(Path(target), text)
+
+
+def _clean(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _clean(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return _clean(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return [_clean(item) for item in value]
+    if isinstance(value, (float, np.floating)):
+        return float(value) if math.isfinite(value) else None
+    if isinstance(value, np.integer):
+        return int(value)
+    return value
+
+
+def print_table(title: str, headers: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    """A table on stdout."""
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left")
+    for index, header in enumerate(headers):
+        table.add_column(header, justify="left" if index == 0 else "right", overflow="fold")
+    for row in rows:
+        table.add_row(*[f"{item:.6g}" if isinstance(item, float) else str(item) for item in row])
+    Console().print(table)

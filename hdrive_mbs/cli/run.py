@@ -1,0 +1,89 @@
+"""``hdrive-mbs run``: simulate a scene."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hdrive_mbs.cli.options import Effects, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.output import print_table, write_json
+from hdrive_mbs.cli.scene_source import open_scene
+from hdrive_mbs.engine import solvers
+from hdrive_mbs.engine.solvers import Solver
+from hdrive_mbs.errors import ParameterError
+
+
+def run(
+    scene: ScenePath,
+    set_: Settings = None,
+    effect: Effects = None,
+    duration: Annotated[float, typer.Option(help="Simulated time [s].")] = 1.0,
+    initial_speed: Annotated[float, typer.Option(help="Motor speed at t = 0 [rad/s].")] = 0.0,
+    solver: Annotated[str, typer.Option(help="dormand-prince, runge-kutta-4, trapezoidal or generalized-alpha.")] = "dormand-prince",
+    tolerance: Annotated[float, typer.Option(help="Relative tolerance of dormand-prince.")] = 1e-6,
+    step: Annotated[float, typer.Option(help="Step of the other solvers [s].")] = 1e-4,
+    estimate_error: Annotated[bool, typer.Option("--estimate-error", help="Run again finer and state the error.")] = False,
+    plot: Annotated[list[str] | None, typer.Option(help="Channels to draw (several times); a choice is made if not given.")] = None,
+    csv: Annotated[bool, typer.Option("--csv", help="Write the histories as CSV too.")] = False,
+    out: OutFolder = None,
+    json: JsonFile = None,
+) -> None:
+    """Simulate a scene on Exudyn; write the result, a picture and summary figures."""
+    from hdrive_mbs.analysis.time_response import simulate
+    from hdrive_mbs.plots import plot as draw
+    from hdrive_mbs.plots import save_figure
+
+    chosen = open_scene(scene, set_ or (), effect or ())
+    response = simulate(
+        chosen, duration, solver=_solver(solver, tolerance, step), initial_speed=initial_speed, estimate_error=estimate_error
+    )
+    folder = out or Path("results") / re.sub(r"\W+", "_", chosen.name)
+    result = response.save(folder / "response.npz")
+    pictures = save_figure(draw(response, channels=plot or None), folder / "response")
+    table = response.to_csv(folder / "response.csv") if csv else None
+    summary = response.summary()
+    write_json(
+        json,
+        {
+            "scene": chosen.name,
+            "status": response.status,
+            "duration": float(response.times[-1]),
+            "steps": response.steps,
+            "rejected_steps": response.rejected,
+            "seconds": response.seconds,
+            "solver": response.settings["solver"],
+            "lowering": dict(response.lowering),
+            "estimated_error": dict(response.error),
+            "channels": {name: {"unit": response.units[name], **figures} for name, figures in summary.items()},
+            "result": str(result),
+            "csv": None if table is None else str(table),
+            "pictures": [str(path) for path in pictures],
+        },
+    )
+    if json != "-":
+        _print(chosen.name, response.status, summary, dict(response.units))
+        print(f"{response.steps} steps, {response.seconds:.3f} s CPU. Result: {result}. Picture: {pictures[0]}.")
+    if response.status != "complete":
+        raise typer.Exit(130)
+
+
+def _solver(name: str, tolerance: float, step: float) -> Solver:
+    makers: dict[str, Callable[[], Solver]] = {
+        "dormand-prince": lambda: solvers.DormandPrince(relative_tolerance=tolerance, absolute_tolerance=tolerance * 1e-2),
+        "runge-kutta-4": lambda: solvers.RungeKutta4(step=step),
+        "trapezoidal": lambda: solvers.Trapezoidal(step=step),
+        "generalized-alpha": lambda: solvers.GeneralizedAlpha(step=step),
+    }
+    if name not in makers:
+        raise ParameterError(f"--solver {name!r}: must be one of {', '.join(makers)}.")
+    return makers[name]()
+
+
+def _print(name: str, status: str, summary: dict[str, dict[str, float]], units: dict[str, str]) -> None:
+    shown = [channel for channel in summary if channel.endswith((".speed", ".torque", ".twist"))]
+    rows = [[f"{c} [{units[c]}]", *(summary[c][key] for key in ("min", "max", "mean", "final"))] for c in shown]
+    print_table(f"{name}: {status}", ["channel", "min", "max", "mean", "final"], rows)

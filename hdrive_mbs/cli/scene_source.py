@@ -1,0 +1,106 @@
+"""Scenes for the command line: SCENE.py with build(), or a scene file, with --set and --effect."""
+
+from __future__ import annotations
+
+import importlib.util
+import inspect
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import FileFormatError, HdriveError, SceneError, unknown_place
+from hdrive_mbs.quantities import Quantity
+from hdrive_mbs.scene import Scene
+from hdrive_mbs.scene_file import all_types, load_scene, parse_setting
+from hdrive_mbs.units import to_si
+
+
+def open_scene(path: Path, settings: Sequence[str] = (), effects: Sequence[str] = ()) -> Scene:
+    """The scene of a .py file (its ``build()``) or of a .toml or .json file, with changes applied.
+
+    settings : ``PATH=VALUE``; a name without a dot that is an argument of build() is passed to it
+    effects : ``TYPE@PLACE:field=value,field=value``
+    """
+    if path.suffix == ".py":
+        scene, rest = _build(path, settings)
+    else:
+        scene, rest = load_scene(path), list(settings)
+    for text in rest:
+        name, value = parse_setting(scene, text)
+        scene = scene.replacing({name: value})
+    for text in effects:
+        effect, place = parse_effect(text)
+        scene = scene.with_effect(effect, at=place)
+    return scene
+
+
+def _build(path: Path, settings: Sequence[str]) -> tuple[Scene, list[str]]:
+    if not path.is_file():
+        raise FileFormatError(f"{path}: no such file. Give a .py file with build() -> Scene, or a .toml or .json scene.")
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    build = getattr(module, "build", None)
+    if build is None:
+        raise SceneError(f"{path} has no function build() that returns a Scene.")
+    wanted = inspect.signature(build).parameters
+    arguments: dict[str, Any] = {}
+    rest = []
+    for text in settings:
+        name, sign, value = text.partition("=")
+        if sign and name.strip() in wanted:
+            arguments[name.strip()] = _plain(value.strip())
+        else:
+            rest.append(text)
+    scene = build(**arguments)
+    if not isinstance(scene, Scene):
+        raise SceneError(f"{path}: build() returned a {type(scene).__name__}, not a Scene.")
+    return scene, rest
+
+
+def _plain(value: str) -> Any:
+    try:
+        return float(value)
+    except ValueError:
+        return {"true": True, "false": False}.get(value.lower(), value)
+
+
+def effect_types() -> dict[str, type[Effect]]:
+    """All effect classes that can be put into a scene, by name."""
+    shapes = {"Effect", "TorqueEffect", "TwistEffect", "LawEffect"}
+    return {
+        name: kind for name, kind in sorted(all_types().items()) if issubclass(kind, Effect) and name not in shapes and not name.startswith("_")
+    }
+
+
+def parse_effect(text: str) -> tuple[Effect, str]:
+    """``CoulombStribeckFriction@load:coulomb=2 N m,smoothing_speed=0.02`` -> effect and place."""
+    head, _, fields = text.partition(":")
+    name, sign, place = head.partition("@")
+    kinds = effect_types()
+    if not sign or not place:
+        raise FileFormatError(f"{text!r}: write TYPE@PLACE:field=value,field=value.")
+    if name not in kinds:
+        raise unknown_place("effect", name, kinds, "The library")
+    known: dict[str, Quantity | None] = {item: field.metadata.get("quantity") for item, field in kinds[name].__dataclass_fields__.items()}
+    values: dict[str, Any] = {}
+    for item in filter(None, fields.split(",")):
+        key, equal, value = (part.strip() for part in item.partition("="))
+        if not equal or key not in known:
+            raise unknown_place("field", key, known, name)
+        quantity = known[key]
+        values[key] = _plain(value) if quantity is None else _number(value, quantity, f"{name}.{key}")
+    try:
+        return kinds[name](**values), place
+    except TypeError as error:
+        raise HdriveError(f"{text!r}: {error}.") from None
+
+
+def _number(value: str, quantity: Quantity, where: str) -> float:
+    try:
+        return float(value)
+    except ValueError:
+        return to_si(value, quantity.unit, where)

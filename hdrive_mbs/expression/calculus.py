@@ -1,0 +1,93 @@
+"""Derivatives of recorded laws."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from hdrive_mbs.expression.node import Expression, Value, as_node, choose, constant, is_constant, make, power, variable
+from hdrive_mbs.expression.use import evaluate, record
+
+
+def derivative(expression: Expression, name: str) -> Expression:
+    """Partial derivative with respect to the variable.
+
+    At kinks (abs, sign, min, max, where) the derivative is the one-sided derivative of the branch
+    that the condition selects; jumps contribute nothing.
+    """
+    known: dict[int, Expression] = {}
+
+    def visit(node: Expression) -> Expression:
+        key = id(node)
+        if key not in known:
+            known[key] = _differentiate(node, visit, name)
+        return known[key]
+
+    return visit(expression)
+
+
+Rule = Callable[..., Any]
+"""Derivative of one operation from (node, *arguments, *their derivatives)."""
+
+
+def _differentiate(node: Expression, visit: Callable[[Expression], Expression], name: str) -> Expression:
+    operation, args = node.operation, node.arguments
+    if operation == "variable":
+        return constant(1.0 if node.data == name else 0.0)
+    if operation in _FLAT:
+        return constant(0.0)
+    if operation == "where":
+        return choose(args[0], visit(args[1]), visit(args[2]))
+    if operation in ("min", "max"):
+        first, second = args if operation == "min" else (args[1], args[0])
+        return choose(first < second, visit(args[0]), visit(args[1]))
+    slopes = [visit(item) for item in args]
+    if all(is_constant(item, 0.0) for item in slopes):
+        return constant(0.0)
+    return as_node(_RULES[operation](node, *args, *slopes))
+
+
+_FLAT = {"constant", "sign", "floor", "ceil", "lt", "le", "eq", "and", "or", "not"}
+
+
+def _d_pow(node: Expression, a: Expression, b: Expression, da: Expression, db: Expression) -> Expression:
+    result = b * power(a, b - 1.0) * da
+    if not is_constant(db, 0.0):
+        result = result + node * make("log", a) * db
+    return result
+
+
+_RULES: dict[str, Rule] = {
+    "add": lambda n, a, b, da, db: da + db,
+    "sub": lambda n, a, b, da, db: da - db,
+    "mul": lambda n, a, b, da, db: da * b + a * db,
+    "div": lambda n, a, b, da, db: da / b - a * db / (b * b),
+    "pow": _d_pow,
+    "neg": lambda n, a, da: -da,
+    "sin": lambda n, a, da: make("cos", a) * da,
+    "cos": lambda n, a, da: -(make("sin", a) * da),
+    "tan": lambda n, a, da: (1.0 + n * n) * da,
+    "asin": lambda n, a, da: da / make("sqrt", 1.0 - a * a),
+    "acos": lambda n, a, da: -(da / make("sqrt", 1.0 - a * a)),
+    "atan": lambda n, a, da: da / (1.0 + a * a),
+    "atan2": lambda n, a, b, da, db: (da * b - a * db) / (a * a + b * b),
+    "sinh": lambda n, a, da: make("cosh", a) * da,
+    "cosh": lambda n, a, da: make("sinh", a) * da,
+    "tanh": lambda n, a, da: (1.0 - n * n) * da,
+    "asinh": lambda n, a, da: da / make("sqrt", a * a + 1.0),
+    "acosh": lambda n, a, da: da / make("sqrt", a * a - 1.0),
+    "atanh": lambda n, a, da: da / (1.0 - a * a),
+    "exp": lambda n, a, da: n * da,
+    "log": lambda n, a, da: da / a,
+    "sqrt": lambda n, a, da: da / (2.0 * n),
+    "abs": lambda n, a, da: make("sign", a) * da,
+}
+
+
+def gradient(function: Callable[[Value], Value]) -> Callable[[Value], Value]:
+    """Derivative of a function of one argument, usable on numbers, arrays and expressions.
+
+    Raises TraceError where the function cannot be recorded.
+    """
+    slope = derivative(record(function(variable("x"))), "x")
+    return lambda x: evaluate(slope, {"x": x})
