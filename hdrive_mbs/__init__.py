@@ -12,7 +12,7 @@ Names are imported when first used, so ``import hdrive_mbs`` itself loads next t
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 __version__ = "0.1.0"
 
@@ -29,33 +29,75 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "components.motor": ("Motor",),
     "components.inertia": ("Inertia",),
     "components.shaft": ("Shaft",),
+    "components.rigid_coupling": ("RigidCoupling",),
     "components.harmonic_drive": ("HarmonicDrive",),
     "components.load": ("Load",),
+    "components.speed_controller": ("SpeedController",),
+    "components.sensor": ("Sensor",),
     "flexsplines.law": ("StiffnessLaw",),
     "flexsplines.piecewise_linear": ("PiecewiseLinearStiffness",),
+    "flexsplines.cubic": ("CubicStiffness",),
+    "flexsplines.jump_torque": ("JumpTorqueStiffness",),
+    "flexsplines.jump_secant": ("JumpSecantStiffness",),
+    "flexsplines.continuous": ("ContinuousStiffness",),
+    "flexsplines.table": ("TableStiffness",),
     "motors.characteristic": ("MotorCharacteristic",),
     "motors.asynchronous": ("AsynchronousMotor",),
+    "motors.torque_speed_table": ("TorqueSpeedTable",),
+    "motors.commanded": ("CommandedMotor",),
+    "motors.servo": ("ServoMotor",),
+    "motors.ideal_speed": ("IdealSpeedMotor",),
+    "motors.inverter": ("InverterMotor",),
+    "motors.profiles.profile": ("SpeedProfile",),
+    "motors.profiles.constant": ("ConstantSpeed",),
+    "motors.profiles.ramp": ("SpeedRamp",),
+    "motors.profiles.table": ("SpeedTable",),
     "loads.law": ("LoadLaw",),
     "loads.constant": ("ConstantTorque",),
     "loads.sine": ("SineTorque",),
-    "effects.effect": ("Effect", "TorqueEffect", "TwistEffect", "LawEffect"),
+    "loads.ramp": ("RampTorque",),
+    "loads.table": ("TableTorque",),
+    "loads.torque_speed": ("TorqueSpeedLoad",),
+    "loads.quadratic": ("QuadraticLoad",),
+    "effects.effect": (
+        "Effect", "TorqueEffect", "TwistEffect", "LawEffect", "MemoryTorqueEffect", "MemoryTwistEffect",
+    ),
+    "effects.bouc_wen_hysteresis": ("BoucWenHysteresis",),
     "effects.coulomb_stribeck_friction": ("CoulombStribeckFriction",),
+    "effects.coupling_backlash": ("CouplingBacklash",),
+    "effects.eccentric_load": ("EccentricLoad",),
+    "effects.kinematic_error": ("KinematicError",),
+    "effects.lugre_friction": ("LuGreFriction",),
+    "effects.maxwell_slip_hysteresis": ("MaxwellSlipHysteresis",),
+    "effects.mesh_friction": ("MeshFriction",),
+    "effects.quadratic_drag": ("QuadraticDrag",),
+    "effects.torque_ripple": ("TorqueRipple",),
+    "effects.viscous_drag": ("ViscousDrag",),
     "engine.solvers": ("Solver", "DormandPrince", "RungeKutta4", "Trapezoidal", "GeneralizedAlpha"),
     "engine.assembly": ("LoweringWarning",),
     "analysis.result": ("Result", "load"),
     "analysis.time_response": ("Response", "simulate"),
+    "analysis.start_up": ("StartUp", "start_up"),
+    "analysis.torsion": ("TorsionCurve", "torsion"),
     "analysis.operating_point": ("OperatingPoint", "operating_point"),
     "analysis.modes": ("Modes", "modes"),
     "analysis.campbell": ("Campbell", "torsional_campbell"),
+    "analysis.torsion": ("TorsionCurve", "torsion"),
+    "analysis.spectrum": ("Spectrum", "spectrum"),
+    "analysis.order_spectrum": ("OrderSpectrum", "order_spectrum"),
+    "analysis.start_up": ("StartUp", "start_up"),
+    "analysis.energy": ("EnergyBalance", "energy_balance"),
+    "analysis.reduction": ("Reduction", "reduce", "with_rigid_shafts"),
+    "plots": ("plot", "save_figure"),
+    "analysis.spectrum": ("Spectrum", "spectrum"),
+    "analysis.order_spectrum": ("OrderSpectrum", "order_spectrum"),
+    "analysis.energy": ("EnergyBalance", "energy_balance"),
+    "analysis.reduction": ("Reduction", "reduce"),
+    "plots": ("plot", "save_figure"),
 }  # fmt: skip
 _MODULE_OF = {name: module for module, exported in _WHERE.items() for name in exported}
 
 __all__ = ["__version__", *sorted(_MODULE_OF)]
-
-if TYPE_CHECKING:
-    from hdrive_mbs.analysis.result import Result as Result
-    from hdrive_mbs.analysis.result import load as load
-
 
 def __getattr__(name: str) -> Any:
     module = _MODULE_OF.get(name)

@@ -42,8 +42,8 @@ def demo(
     save_scene(scene, out / "scene.toml")
     with_error = scene.with_effect(KinematicError(amplitude=1e-4, order=2.0), at="gear.mesh")
     results: dict[str, Result] = {
-        "start_up": simulate(scene, 1.5),
-        "start_up_kinematic_error": simulate(with_error, 1.5),
+        "start_up": simulate(scene, 1.5, sample_step=5e-4),
+        "start_up_kinematic_error": simulate(with_error, 1.5, sample_step=5e-4),
         "torsion": torsion(scene),
         "modes": modes(scene),
         "campbell": torsional_campbell(

@@ -41,11 +41,12 @@ def _clean(value: Any) -> Any:
 def print_table(title: str, headers: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """A table on stdout."""
     from rich.console import Console
+    from rich.markup import escape
     from rich.table import Table
 
-    table = Table(title=title, title_justify="left")
+    table = Table(title=escape(title), title_justify="left")
     for index, header in enumerate(headers):
-        table.add_column(header, justify="left" if index == 0 else "right", overflow="fold")
+        table.add_column(escape(header), justify="left" if index == 0 else "right", overflow="fold")
     for row in rows:
-        table.add_row(*[f"{item:.6g}" if isinstance(item, float) else str(item) for item in row])
+        table.add_row(*[f"{item:.6g}" if isinstance(item, float) else escape(str(item)) for item in row])
     Console().print(table)

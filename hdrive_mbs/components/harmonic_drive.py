@@ -46,6 +46,7 @@ class HarmonicDrive(Component):
     def check(self) -> None:
         if not isinstance(self.stiffness, StiffnessLaw):
             object.__setattr__(self, "stiffness", StiffnessFunction(function=self.stiffness))
+        self.law.check_restoring()
         if self.output_sense not in ("opposite", "same"):
             raise ParameterError(f"HarmonicDrive.output_sense = {self.output_sense!r}: must be 'opposite' or 'same'.")
 

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from hdrive_mbs.effects.effect import Effect, add_body_torque
+from hdrive_mbs.effects.effect import Effect, add_body_torque, moving_body
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
@@ -36,7 +36,7 @@ class EccentricLoad(Effect):
     signature: ClassVar[str] = "torque at once per turn of the body at every speed, and a rest position that the body swings back to"
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
-        body = draft.body(place, "EccentricLoad")
+        body = moving_body(self, draft, place)
 
         def torque(moment: Moment) -> Value:
             angle = body.sense * moment.angle(body.name)

@@ -16,8 +16,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from hdrive_mbs.errors import PlaceError
 from hdrive_mbs.expression import Value
-from hdrive_mbs.network.draft import Draft
+from hdrive_mbs.network.draft import Draft, Node
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.quantities import Described
 
@@ -42,6 +43,15 @@ class Effect(Described, ABC):
         """
 
 
+def moving_body(effect: Effect, draft: Draft, place: str) -> Node:
+    """The body of that place.  Raises PlaceError where there is none or where the ground holds it."""
+    kind = type(effect).__name__
+    node = draft.body(place, kind)
+    if node.name == "ground":
+        raise PlaceError(f"{kind} at {place!r} would do nothing: that place is held by the ground. Put it on a body that can turn.")
+    return node
+
+
 def add_body_torque(
     effect: Effect,
     draft: Draft,
@@ -64,7 +74,7 @@ class TorqueEffect(Effect):
         """Torque [N m] along the forward sense, at a forward angle [rad] and speed [rad/s]."""
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
-        body = draft.body(place, type(self).__name__).name
+        body = moving_body(self, draft, place).name
         add_body_torque(self, draft, body, name, lambda m: self.torque(m.time, m.angle(body), m.speed(body)))
 
 
@@ -172,7 +182,7 @@ class MemoryTorqueEffect(_Memory):
         """Rate of the state of that name [its unit/s]."""
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
-        body = draft.body(place, type(self).__name__).name
+        body = moving_body(self, draft, place).name
         read = self._add_states(draft, name, lambda own, m, state: self.state_rate(own, m.time, m.angle(body), m.speed(body), state))
 
         def torque(moment: Moment) -> Value:

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from hdrive_mbs.effects.effect import Effect, add_body_torque
+from hdrive_mbs.effects.effect import Effect, add_body_torque, moving_body
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
@@ -36,7 +36,7 @@ class TorqueRipple(Effect):
     signature: ClassVar[str] = "torque and speed vibration at a fixed order of the motor, in proportion to its torque for the relative part"
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
-        body = draft.body(place, "TorqueRipple")
+        body = moving_body(self, draft, place)
         motor = draft.motor_torque(place, "TorqueRipple.relative") if self.relative > 0.0 else None
 
         def torque(moment: Moment) -> Value:

@@ -108,7 +108,7 @@ class _Builder:
     # -- one displacement --------------------------------------------------------------------------
     def add_scalar(self, record: ScalarRecord) -> None:
         (last, factor), *rest = reversed(list(record.factors.items()))
-        first, other = (rest[0][0], rest[0][1]) if rest else ("ground", 0.0)
+        first, other = (rest[0][0], rest[0][1]) if rest else ("ground", -1.0)
         markers = [self.markers[first] if rest else self.ground, self.markers[last]]
         unit = factor == 1.0 and (not rest or other == -1.0)
         geared: dict[str, Any] = {} if unit else {"factor0": -other, "factor1": factor}
@@ -141,11 +141,14 @@ class _Builder:
 
     # -- several coordinates -------------------------------------------------------------------------
     def add_coupled(self, record: CoupledRecord) -> None:
+        outputs = {name: item_ for name, item_ in (record.outputs or {}).items() if not _is_zero(item_)}
+        if not record.targets or (record.outputs is not None and not outputs):
+            self.lowered.append(Lowered(record.name, "native"))  # zero, or on prescribed motions only
+            return
         if record.outputs is None:
             self._warn(record.name, record.reason)
             self._add_plain(record)
             return
-        outputs = {name: item_ for name, item_ in record.outputs.items() if not _is_zero(item_)}
         groups = [tuple(outputs)] if self._size(outputs) <= SYMBOLIC_VECTOR_LIMIT else [(name,) for name in outputs]
         how = "symbolic"
         for group in groups:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from hdrive_mbs.expression import Expression, TraceError, Value, derivative, evaluate, record, variable, variables
+from hdrive_mbs.errors import HdriveError, LawError
+from hdrive_mbs.expression import Expression, TraceError, Value, derivative, evaluate, record, trace, variable, variables
 from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, StateRate
 from hdrive_mbs.network.moment import Moment, recording_moment
 from hdrive_mbs.network.network import Network
@@ -77,10 +77,22 @@ class _Looked(Mapping[str, float]):
         return len(self._seen)
 
 
-def _looked_at(function: Callable[[Moment], Any]) -> tuple[str, ...]:
+def _looked_at(name: str, function: Callable[[Moment], Iterable[Value]]) -> tuple[str, ...]:
+    """Names that a law looks at when it computes with plain numbers.
+
+    Raises LawError where it does not give numbers.
+    """
     seen: dict[str, None] = {}
     looked = _Looked(seen)
-    function(Moment(time=1e-3, angles=looked, speeds=looked, states=looked))
+    try:
+        for value in function(Moment(time=1e-3, angles=looked, speeds=looked, states=looked)):
+            if np.ndim(value) != 0:
+                raise TypeError(f"it gives an array of shape {np.shape(value)}, not a number")
+            float(value)
+    except HdriveError:
+        raise
+    except Exception as error:
+        raise LawError(f"{name}: the law fails on plain numbers ({type(error).__name__}: {error}). Correct the function.") from error
     return tuple(seen)
 
 
@@ -121,6 +133,10 @@ def _overlay(m: Moment, name: str, x: Value, v: Value) -> Moment:
     return Moment(time=m.time, angles=_Over(m.angles, name, x), speeds=_Over(m.speeds, name, v), states=m.states)
 
 
+def _zeros(network: Network) -> dict[str, float]:
+    return dict.fromkeys([item.name for item in (*network.bodies, *network.motions, *network.states)], 0.0)
+
+
 def _scalar(element: Element, network: Network) -> ScalarRecord | None:
     form = _scalar_form(element)
     if form is None:
@@ -129,19 +145,20 @@ def _scalar(element: Element, network: Network) -> ScalarRecord | None:
     prescribed = {motion.name: motion for motion in network.motions}
     moving = {name: f for name, f in factors.items() if name not in prescribed and f != 0.0}
     driven = [(f, prescribed[name]) for name, f in factors.items() if name in prescribed and name != "ground"]
+    rest = _zeros(network)  # the law may name what it multiplies by zero
     if len(moving) > 2 or not moving:
         return None
 
     def plain(t: Value, x: Value, v: Value) -> Value:
         shift = sum(f * motion.angle(t) for f, motion in driven)
         drift = sum(f * motion.speed(t) for f, motion in driven)
-        return law(Moment(time=t, angles={}, speeds={}, states={}), x + shift, v + drift)
+        return law(Moment(time=t, angles=rest, speeds=rest, states=rest), x + shift, v + drift)
 
     reason = ""
     expression: Expression | None = None
     try:
         symbols = recording_moment()
-        traced = record(law(symbols, variable("x"), variable("v")))
+        traced = trace(law, symbols, variable("x"), variable("v"))
         if not variables(traced) <= {"t", "x", "v"}:
             return None
         t = variable("t")
@@ -150,22 +167,34 @@ def _scalar(element: Element, network: Network) -> ScalarRecord | None:
         expression = record(evaluate(traced, {"t": t, "x": x, "v": v}))
     except TraceError as error:
         reason = str(error)
-        if _looked_at(lambda m: law(m, 1e-3, 1e-3)):
+        if _looked_at(element.name, lambda m: [law(m, 1e-3, 1e-3)]):
             return None
     return ScalarRecord(element.name, moving, expression, plain, reason)
+
+
+def _traced(element: Element, symbols: Moment) -> dict[str, Value]:
+    result: dict[str, Value] = {}
+
+    def total(moment: Moment) -> Value:
+        result.update(element.contribution(moment))
+        return 0.0
+
+    trace(total, symbols)
+    return result
 
 
 def _coupled(element: Element, network: Network) -> CoupledRecord:
     prescribed = {motion.name: motion for motion in network.motions}
     kept = {body.name for body in network.bodies} | {state.name for state in network.states}
+    rest = _zeros(network)  # the law may name what it multiplies by zero
 
     def plain(moment: Moment) -> dict[str, Value]:
-        full = network.moment(moment.time, moment.angles, moment.speeds, moment.states)
+        full = network.moment(moment.time, {**rest, **moment.angles}, {**rest, **moment.speeds}, {**rest, **moment.states})
         return {name: value for name, value in element.contribution(full).items() if name in kept}
 
     try:
         symbols = recording_moment()
-        raw = element.contribution(symbols)
+        raw = _traced(element, symbols)
         time = symbols.time
         given: dict[str, Value] = {}
         traced = {name: record(value) for name, value in raw.items() if name in kept}
@@ -182,6 +211,6 @@ def _coupled(element: Element, network: Network) -> CoupledRecord:
         depends = tuple(dict.fromkeys(n.partition(":")[2] for n in sorted(variables(*outputs.values())) if n != "t"))
         return CoupledRecord(element.name, tuple(outputs), outputs, depends, plain)
     except TraceError as error:
-        seen = tuple(name for name in _looked_at(element.contribution) if name in kept)
+        seen = tuple(name for name in _looked_at(element.name, lambda m: element.contribution(m).values()) if name in kept)
         probe = Moment(time=1e-3, angles=dict.fromkeys(kept, 1e-3), speeds=dict.fromkeys(kept, 1e-3), states=dict.fromkeys(kept, 1e-3))
         return CoupledRecord(element.name, tuple(plain(probe)), None, seen, plain, str(error))

@@ -51,6 +51,17 @@ def _interrupt_flag() -> Iterator[threading.Event]:
         signal.signal(signal.SIGINT, previous)
 
 
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep exudyn from printing to the console: what matters comes back as status or error."""
+    before = exu.config.printToConsole
+    exu.config.printToConsole = False
+    try:
+        yield
+    finally:
+        exu.config.printToConsole = before
+
+
 def run(
     assembly: Assembly,
     *,
@@ -82,7 +93,7 @@ def run(
     settings.timeIntegration.explicit.computeEndOfStepAccelerations = False
     solver_type = solver.configure(settings, duration)
     error = ""
-    with _interrupt_flag() as interrupted:
+    with _interrupt_flag() as interrupted, _quiet():
         _watch(mbs, interrupted, cancel, progress)
         started = time.process_time()
         try:

@@ -7,7 +7,7 @@ from typing import Any
 
 import exudyn as exu
 
-from hdrive_mbs.expression import Expression
+from hdrive_mbs.expression import Expression, constant, in_order, variable
 
 esym = exu.symbolic
 
@@ -33,27 +33,27 @@ _UNARY = {
 def emit(expression: Expression, values: dict[str, Any]) -> Any:
     """The expression over exudyn.symbolic reals (recording must be on)."""
     known: dict[int, Any] = {}
+    for node in in_order(expression):
+        arguments = [known[id(item)] for item in node.arguments]
+        if node.operation == "constant":
+            made = esym.Real(node.data)
+        elif node.operation == "variable":
+            made = values[node.data]
+        elif node.operation == "where":
+            made = esym.IfThenElse(*arguments)
+        elif len(arguments) == 1:
+            made = _UNARY[node.operation](arguments[0])
+        else:
+            made = _BINARY[node.operation](*arguments)
+        known[id(node)] = made
+    return known[id(expression)]
 
-    def visit(node: Expression) -> Any:
-        key = id(node)
-        if key not in known:
-            known[key] = make(node)
-        return known[key]
 
-    def make(node: Expression) -> Any:
-        operation = node.operation
-        if operation == "constant":
-            return esym.Real(node.data)
-        if operation == "variable":
-            return values[node.data]
-        arguments = [visit(item) for item in node.arguments]
-        if operation == "where":
-            return esym.IfThenElse(*arguments)
-        if len(arguments) == 1:
-            return _UNARY[operation](arguments[0])
-        return _BINARY[operation](*arguments)
-
-    return visit(expression)
+def _operation(expression: Expression, name: str) -> Expression:
+    """A bare constant or variable as an operation, which is what a user function must return."""
+    if expression.operation not in ("constant", "variable"):
+        return expression
+    return Expression("add", (expression, Expression("mul", (constant(0.0), variable(name)))))
 
 
 _SCALAR = {
@@ -89,7 +89,7 @@ def connector_function(mbs: Any, item: str, torque: Expression) -> Any:
     try:
         names = ["t", "i", "x", "v", *(f"p{k}" for k in range(extra))]
         reals = [esym.Real(name, 0.0) for name in names]
-        value = emit(torque, {"t": reals[0], "x": reals[2], "v": reals[3]}) + 0.0 * reals[2]
+        value = emit(_operation(torque, "x"), {"t": reals[0], "x": reals[2], "v": reals[3]})
     finally:
         esym.SetRecording(was_on)
     types = ["Real", "Index", *["Real"] * (extra + 2)]
@@ -112,7 +112,7 @@ def generic_function(mbs: Any, outputs: Sequence[Expression], positions: Sequenc
         values: dict[str, Any] = {"t": time}
         values |= {name: q[k] for k, name in enumerate(positions) if name}
         values |= {name: q_t[k] for k, name in enumerate(velocities) if name}
-        value = esym.Vector([emit(item, values) + 0.0 * time for item in outputs])
+        value = esym.Vector([emit(_operation(item, "t"), values) for item in outputs])
     finally:
         esym.SetRecording(was_on)
     types = ["Real", "Index", "StdVector", "StdVector"]

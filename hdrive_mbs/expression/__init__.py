@@ -16,7 +16,7 @@ from hdrive_mbs.expression import numpy_functions
 from hdrive_mbs.expression.calculus import derivative, gradient
 from hdrive_mbs.expression.node import Expression, TraceError, Value, constant, is_constant, variable
 from hdrive_mbs.expression.python_code import scalar_function, scalar_source
-from hdrive_mbs.expression.use import evaluate, record, variables
+from hdrive_mbs.expression.use import evaluate, in_order, record, trace, variables
 
 __all__ = [
     "Expression",
@@ -26,11 +26,13 @@ __all__ = [
     "derivative",
     "evaluate",
     "gradient",
+    "in_order",
     "is_constant",
     "numpy_functions",
     "record",
     "scalar_function",
     "scalar_source",
+    "trace",
     "variable",
     "variables",
 ]

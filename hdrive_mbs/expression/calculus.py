@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from hdrive_mbs.expression.node import Expression, Value, as_node, choose, constant, is_constant, make, power, variable
-from hdrive_mbs.expression.use import evaluate, record
+from hdrive_mbs.expression.use import evaluate, in_order, trace
 
 
 def derivative(expression: Expression, name: str) -> Expression:
@@ -16,32 +18,26 @@ def derivative(expression: Expression, name: str) -> Expression:
     that the condition selects; jumps contribute nothing.
     """
     known: dict[int, Expression] = {}
-
-    def visit(node: Expression) -> Expression:
-        key = id(node)
-        if key not in known:
-            known[key] = _differentiate(node, visit, name)
-        return known[key]
-
-    return visit(expression)
+    for node in in_order(expression):
+        known[id(node)] = _differentiate(node, [known[id(item)] for item in node.arguments], name)
+    return known[id(expression)]
 
 
 Rule = Callable[..., Any]
 """Derivative of one operation from (node, *arguments, *their derivatives)."""
 
 
-def _differentiate(node: Expression, visit: Callable[[Expression], Expression], name: str) -> Expression:
+def _differentiate(node: Expression, slopes: list[Expression], name: str) -> Expression:
     operation, args = node.operation, node.arguments
     if operation == "variable":
         return constant(1.0 if node.data == name else 0.0)
     if operation in _FLAT:
         return constant(0.0)
     if operation == "where":
-        return choose(args[0], visit(args[1]), visit(args[2]))
+        return choose(args[0], slopes[1], slopes[2])
     if operation in ("min", "max"):
         first, second = args if operation == "min" else (args[1], args[0])
-        return choose(first < second, visit(args[0]), visit(args[1]))
-    slopes = [visit(item) for item in args]
+        return choose(first < second, slopes[0], slopes[1])
     if all(is_constant(item, 0.0) for item in slopes):
         return constant(0.0)
     return as_node(_RULES[operation](node, *args, *slopes))
@@ -89,5 +85,10 @@ def gradient(function: Callable[[Value], Value]) -> Callable[[Value], Value]:
 
     Raises TraceError where the function cannot be recorded.
     """
-    slope = derivative(record(function(variable("x"))), "x")
-    return lambda x: evaluate(slope, {"x": x})
+    slope = derivative(trace(function, variable("x")), "x")
+
+    def of(x: Value) -> Value:
+        value = evaluate(slope, {"x": x})
+        return np.full(np.shape(x), value) if is_constant(slope) and isinstance(x, np.ndarray) else value
+
+    return of

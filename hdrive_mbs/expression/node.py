@@ -36,7 +36,7 @@ class Expression:
         raise TraceError("the law turns its argument into a plain float (math.sin, float()); use the numpy function")
 
     def __int__(self) -> int:
-        raise TraceError("the law turns its argument into a plain int; use np.floor or np.trunc")
+        raise TraceError("the law turns its argument into a plain int; use np.floor, np.ceil or np.trunc")
 
     def __array__(self, *_: Any, **__: Any) -> Any:
         raise TraceError("the law puts its argument into an array; use it directly in arithmetic and numpy functions")
@@ -78,6 +78,15 @@ class Expression:
     def __mod__(self, other: Value) -> Expression:
         return modulo(self, as_node(other))
 
+    def __rmod__(self, other: Value) -> Expression:
+        return modulo(as_node(other), self)
+
+    def __floordiv__(self, other: Value) -> Expression:
+        return make("floor", divide(self, as_node(other)))
+
+    def __rfloordiv__(self, other: Value) -> Expression:
+        return make("floor", divide(as_node(other), self))
+
     def __neg__(self) -> Expression:
         return negate(self)
 
@@ -107,14 +116,19 @@ class Expression:
         return make("not", make("eq", self, as_node(other)))
 
     def __and__(self, other: Value) -> Expression:
-        return make("and", self, as_node(other))
+        return make("and", truth(self), truth(as_node(other)))
 
     __rand__ = __and__
 
     def __or__(self, other: Value) -> Expression:
-        return make("or", self, as_node(other))
+        return make("or", truth(self), truth(as_node(other)))
 
     __ror__ = __or__
+
+    def __xor__(self, other: Value) -> Expression:
+        return make("not", make("eq", truth(self), truth(as_node(other))))
+
+    __rxor__ = __xor__
 
     def __invert__(self) -> Expression:
         return make("not", self)
@@ -122,15 +136,22 @@ class Expression:
     # -- numpy protocols ------------------------------------------------------------------------
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **kwargs: Any) -> Any:
         handler = UFUNCS.get(ufunc.__name__)
-        if method != "__call__" or handler is None or kwargs.get("out") is not None:
-            raise TraceError(f"np.{ufunc.__name__} cannot be recorded")
+        if method != "__call__" or handler is None:
+            raise TraceError(f"np.{ufunc.__name__}{'' if method == '__call__' else '.' + method} cannot be recorded")
+        if kwargs:
+            raise TraceError(f"np.{ufunc.__name__} with {', '.join(kwargs)}= cannot be recorded")
         return handler(*(as_node(item) for item in inputs))
 
     def __array_function__(self, function: Any, _types: Any, args: Any, kwargs: Any) -> Any:
         handler = FUNCTIONS.get(function.__name__)
         if handler is None:
             raise TraceError(f"np.{function.__name__} cannot be recorded")
-        return handler(*args, **kwargs)
+        try:
+            return handler(*args, **kwargs)
+        except TraceError:
+            raise
+        except (TypeError, ValueError) as error:
+            raise TraceError(f"np.{function.__name__} in this form cannot be recorded ({error})") from error
 
     def __repr__(self) -> str:
         if self.operation == "constant":
@@ -190,6 +211,15 @@ def make(operation: str, *arguments: Expression) -> Expression:
         with np.errstate(all="ignore"):
             return constant(float(NUMERIC[operation](*(np.float64(item.data) for item in arguments))))
     return Expression(operation, arguments)
+
+
+LOGICAL = frozenset(("lt", "le", "eq", "and", "or", "not"))
+"""Operations whose value is 0 or 1."""
+
+
+def truth(a: Expression) -> Expression:
+    """1 where the node is not 0, else 0: the node itself when it is a comparison."""
+    return a if a.operation in LOGICAL else make("not", make("not", a))
 
 
 def add(a: Expression, b: Expression) -> Expression:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from hdrive_mbs.expression.node import (
     FUNCTIONS,
     UFUNCS,
     Expression,
+    TraceError,
     add,
     as_node,
     choose,
@@ -25,24 +26,32 @@ from hdrive_mbs.expression.node import (
 )
 
 
-def _interp(x: Any, xp: Sequence[float], fp: Sequence[float], left: Any = None, right: Any = None) -> Expression:
+def _interp(x: Any, xp: Sequence[float], fp: Sequence[float], left: Any = None, right: Any = None, period: Any = None) -> Expression:
     """np.interp as a bisection tree of linear pieces, so the cost grows with log2 of the points."""
+    if period is not None:
+        raise TraceError("np.interp with period= cannot be recorded; write np.interp(np.mod(x, period), ...)")
     xs, ys = np.asarray(xp, float), np.asarray(fp, float)
+    if xs.ndim != 1 or xs.shape != ys.shape or not len(xs) or np.any(np.diff(xs) < 0.0):
+        raise TraceError(f"np.interp needs as many values ({ys.shape}) as rising points ({xs.shape})")
     u = as_node(x)
     low = constant(ys[0] if left is None else left)
     high = constant(ys[-1] if right is None else right)
+    # a step in the table (two values at one point) is a piece of no width, which is never chosen
+    wide = [i for i in range(len(xs) - 1) if xs[i + 1] > xs[i]]
 
     def piece(i: int) -> Expression:
         slope = (ys[i + 1] - ys[i]) / (xs[i + 1] - xs[i])
-        return u * float(slope) + float(ys[i] - slope * xs[i])
+        return (u - float(xs[i])) * float(slope) + float(ys[i])
 
     def tree(first: int, last: int) -> Expression:
         if last - first == 1:
-            return piece(first)
+            return piece(wide[first])
         middle = (first + last) // 2
-        return choose(u < xs[middle], tree(first, middle), tree(middle, last))
+        return choose(u < xs[wide[middle]], tree(first, middle), tree(middle, last))
 
-    inside = tree(0, len(xs) - 1) if len(xs) > 1 else constant(ys[0])
+    inside = tree(0, len(wide)) if wide else constant(ys[-1])
+    if len(xs) > 1 and xs[-2] == xs[-1]:
+        inside = choose(u < xs[-1], inside, constant(ys[-1]))
     return choose(u < xs[0], low, choose(u > xs[-1], high, inside))
 
 
@@ -53,7 +62,8 @@ def _polyval(p: Sequence[Any], x: Any) -> Expression:
     return as_node(result)
 
 
-def _clip(a: Any, a_min: Any = None, a_max: Any = None, **_: Any) -> Expression:
+def _clip(a: Any, a_min: Any = None, a_max: Any = None, *, min: Any = None, max: Any = None) -> Expression:
+    a_min, a_max = (a_min if min is None else min), (a_max if max is None else max)
     result = as_node(a)
     if a_min is not None:
         result = make("max", result, as_node(a_min))
@@ -69,6 +79,22 @@ def _select(condlist: Sequence[Any], choicelist: Sequence[Any], default: Any = 0
     return result
 
 
+def _truncate(a: Expression) -> Expression:
+    return choose(a < 0.0, make("ceil", a), make("floor", a))
+
+
+def _log1p(a: Expression) -> Expression:
+    small = 2.0 * make("atanh", divide(a, 2.0 + a))  # exact to rounding near zero
+    return choose(make("abs", a) < 0.5, small, make("log", 1.0 + a))
+
+
+def _filled(value: float) -> Callable[..., Expression]:
+    def like(_shape_of: Any) -> Expression:
+        return constant(value)
+
+    return like
+
+
 _UNARY = {
     "sin": "sin", "cos": "cos", "tan": "tan", "arcsin": "asin", "arccos": "acos", "arctan": "atan",
     "sinh": "sinh", "cosh": "cosh", "tanh": "tanh", "arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh",
@@ -79,21 +105,27 @@ _UNARY = {
 UFUNCS |= {
     **{name: (lambda a, _op=operation: negate(a) if _op == "neg" else make(_op, a)) for name, operation in _UNARY.items()},
     "add": add, "subtract": lambda a, b: add(a, negate(b)), "multiply": multiply, "divide": divide, "power": power,
-    "float_power": power, "remainder": modulo, "positive": lambda a: a,
+    "float_power": power, "positive": lambda a: a, "trunc": _truncate,
+    "remainder": modulo, "fmod": lambda a, b: a - b * _truncate(divide(a, b)), "floor_divide": lambda a, b: a // b,
     "square": lambda a: make("mul", a, a), "reciprocal": lambda a: divide(constant(1.0), a),
     "hypot": lambda a, b: make("sqrt", a * a + b * b), "arctan2": lambda a, b: make("atan2", a, b),
     "minimum": lambda a, b: make("min", a, b), "maximum": lambda a, b: make("max", a, b),
     "fmin": lambda a, b: make("min", a, b), "fmax": lambda a, b: make("max", a, b),
-    "expm1": lambda a: make("exp", a) - 1.0, "log1p": lambda a: make("log", 1.0 + a),
-    "deg2rad": lambda a: a * (math.pi / 180), "rad2deg": lambda a: a * (180 / math.pi),
+    "expm1": lambda a: 2.0 * make("sinh", 0.5 * a) * make("exp", 0.5 * a), "log1p": _log1p,
+    "exp2": lambda a: power(constant(2.0), a), "cbrt": lambda a: make("sign", a) * power(make("abs", a), constant(1.0 / 3.0)),
+    "log2": lambda a: make("log", a) / math.log(2.0), "log10": lambda a: make("log", a) / math.log(10.0),
+    **dict.fromkeys(("deg2rad", "radians"), lambda a: a * (math.pi / 180)),
+    **dict.fromkeys(("rad2deg", "degrees"), lambda a: a * (180 / math.pi)),
     "less": lambda a, b: a < b, "less_equal": lambda a, b: a <= b, "greater": lambda a, b: a > b,
     "greater_equal": lambda a, b: a >= b, "equal": lambda a, b: a == b, "not_equal": lambda a, b: a != b,
     "logical_and": lambda a, b: a & b, "logical_or": lambda a, b: a | b,
-    "bitwise_and": lambda a, b: a & b, "bitwise_or": lambda a, b: a | b,
+    "bitwise_and": lambda a, b: a & b, "bitwise_or": lambda a, b: a | b, "invert": lambda a: ~a,
+    **dict.fromkeys(("logical_xor", "bitwise_xor"), lambda a, b: a ^ b),
     "heaviside": lambda a, b: choose(a < 0.0, 0.0, choose(a > 0.0, 1.0, b)),
     "copysign": lambda a, b: choose(b < 0.0, -make("abs", a), make("abs", a)),
 }  # fmt: skip
 
 FUNCTIONS |= {
     "where": choose, "interp": _interp, "polyval": _polyval, "clip": _clip, "select": _select,
+    "zeros_like": _filled(0.0), "ones_like": _filled(1.0), "full_like": lambda _shape_of, value: as_node(value),
 }  # fmt: skip

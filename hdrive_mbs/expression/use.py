@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from hdrive_mbs.expression.node import NUMERIC, Expression, Value, add, as_node, choose, divide, make, multiply, negate, power
+from hdrive_mbs.errors import HdriveError
+from hdrive_mbs.expression.node import NUMERIC, Expression, TraceError, Value, add, as_node, choose, divide, make, multiply, negate, power
 
 
 def record(value: Value) -> Expression:
@@ -17,39 +18,53 @@ def record(value: Value) -> Expression:
     return as_node(value)
 
 
+def trace(law: Callable[..., Value], *arguments: Value) -> Expression:
+    """The law as an expression.
+
+    Raises TraceError for whatever stops the recording: a law for plain numbers may ask an
+    expression for anything (``x.copy()``, ``table[x]``, ``round(x)``).
+    """
+    try:
+        return record(law(*arguments))
+    except (TraceError, HdriveError):
+        raise
+    except Exception as error:
+        text = str(error).strip().split("\n")[0]
+        raise TraceError(f"the law cannot be recorded ({type(error).__name__}: {text})") from error
+
+
+def in_order(*expressions: Expression) -> list[Expression]:
+    """All nodes, each once, arguments before what uses them (no recursion: records may be deep)."""
+    ordered: list[Expression] = []
+    seen: set[int] = set()
+    stack = [(expression, False) for expression in reversed(expressions)]
+    while stack:
+        node, done = stack.pop()
+        if done:
+            ordered.append(node)
+        elif id(node) not in seen:
+            seen.add(id(node))
+            stack.append((node, True))
+            stack.extend((item, False) for item in reversed(node.arguments))
+    return ordered
+
+
 def variables(*expressions: Expression) -> set[str]:
     """Names of the free variables."""
-    found: set[str] = set()
-    seen: set[int] = set()
-    stack = list(expressions)
-    while stack:
-        node = stack.pop()
-        if id(node) in seen:
-            continue
-        seen.add(id(node))
-        if node.operation == "variable":
-            found.add(node.data)
-        stack.extend(node.arguments)
-    return found
+    return {node.data for node in in_order(*expressions) if node.operation == "variable"}
 
 
 def evaluate(expression: Expression, values: Mapping[str, Value]) -> Value:
     """The expression with its variables replaced: by numbers, arrays or other expressions."""
     known: dict[int, Value] = {}
-
-    def visit(node: Expression) -> Value:
-        key = id(node)
-        if key not in known:
-            if node.operation == "constant":
-                known[key] = node.data
-            elif node.operation == "variable":
-                known[key] = values[node.data]
-            else:
-                arguments = [visit(item) for item in node.arguments]
-                known[key] = _rebuild(node.operation, arguments)
-        return known[key]
-
-    return visit(expression)
+    for node in in_order(expression):
+        if node.operation == "constant":
+            known[id(node)] = node.data
+        elif node.operation == "variable":
+            known[id(node)] = values[node.data]
+        else:
+            known[id(node)] = _rebuild(node.operation, [known[id(item)] for item in node.arguments])
+    return known[id(expression)]
 
 
 def _rebuild(operation: str, arguments: list[Value]) -> Value:

@@ -123,12 +123,12 @@ class ContinuousStiffness(StiffnessLaw):
         lost_motion : rad, the gap; that of the law if not given
         """
         gap = gap_of(curve, lost_motion)
-        sides = [one_side(curve, largest_torque, gap / 2.0, sign) for sign in ((1.0, -1.0) if isinstance(curve, StiffnessLaw) else (0.0,))]
-        fits = [fit_side(twist - gap / 2.0, torque) for twist, torque in sides]
-        values = dict(zip(_POSITIVE, fits[0], strict=True))
-        if len(fits) == 2 and not np.allclose(fits[0], fits[1], rtol=1e-9, atol=0.0):
-            values |= zip(_NEGATIVE, fits[1], strict=True)
-        return cls(lost_motion=gap, largest_twist=float(min(np.max(twist) for twist, _ in sides)), **values)
+        sides = [one_side(curve, largest_torque, gap / 2.0, sign) for sign in (1, -1)]
+        positive, negative = (fit_side(twist - gap / 2.0, torque) for twist, torque in sides)
+        values = dict(zip(_POSITIVE, positive, strict=True))
+        if not np.allclose(positive, negative, rtol=1e-9, atol=0.0):
+            values |= zip(_NEGATIVE, negative, strict=True)
+        return cls(lost_motion=gap, largest_twist=float(np.max(sides[0][0])), **values)
 
 
 _POSITIVE = ("edge_stiffness", "quadratic", "cubic")

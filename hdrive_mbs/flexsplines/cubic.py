@@ -44,7 +44,7 @@ class CubicStiffness(StiffnessLaw):
         largest_torque : N m, where the fit ends (of points: all of them if not given).  The
         coefficients are held where the torque rises and does not pull away from zero.
         """
-        twist, torque = one_side(curve, largest_torque, 0.0, sign=0.0)
+        twist, torque = one_side(curve, largest_torque, 0.0, 0)
         linear, cubic = fit_pair(twist, torque, 1, 0.0)
         return cls(linear=linear, cubic=cubic, largest_twist=float(np.max(twist)))
 

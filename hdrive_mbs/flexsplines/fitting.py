@@ -26,27 +26,28 @@ def gap_of(curve: Curve, lost_motion: float | None) -> float:
     raise ParameterError("Measured points do not say how wide the gap is: give lost_motion [rad].")
 
 
-def one_side(curve: Curve, largest_torque: float | None, start: float, sign: float = 1.0) -> tuple[FloatArray, FloatArray]:
+def one_side(curve: Curve, largest_torque: float | None, start: float, sign: int) -> tuple[FloatArray, FloatArray]:
     """Twists and torques of one side as positive numbers, from twist ``start`` to the largest torque.
 
-    sign : +1 or -1, the side of a law.  Measured points of both sides are folded together for 0.
+    sign : +1 or -1, the side; 0 for the mean of both, which has the same least-squares odd law as both.
+    Both sides of a law go to the same twist, where the softer one reaches the largest torque;
+    measured points of both sides are always folded on to each other.
     """
     if largest_torque is not None and not largest_torque > 0.0:
         raise ParameterError(f"largest_torque = {largest_torque} N m: must be greater than 0 N m.")
     if isinstance(curve, StiffnessLaw):
         if largest_torque is None:
             raise ParameterError("largest_torque [N m] is missing: a law has no end, so say up to which torque to fit it.")
-        side = sign or 1.0
-        end = abs(float(curve.twist(side * largest_torque)))
+        end = float(np.max(np.abs(curve.twist([-largest_torque, largest_torque]))))
         twist = np.linspace(start, end, SAMPLES)
-        return twist, side * np.asarray(curve.torque(side * twist), float)
+        signs = (sign,) if sign else (1, -1)
+        return twist, np.mean([side * np.asarray(curve.torque(side * twist), float) for side in signs], axis=0)
     twist, torque = (np.asarray(values, float) for values in curve)
     if twist.shape != torque.shape or twist.ndim != 1:
         raise ParameterError(f"Points to fit: {twist.shape} twists and {torque.shape} torques; both must be lists of the same length.")
     if not (np.isfinite(twist).all() and np.isfinite(torque).all()):
         raise ParameterError("Points to fit: every twist [rad] and torque [N m] must be a finite number.")
-    fold = np.sign(twist) if sign == 0.0 else np.full_like(twist, sign)
-    twist, torque = fold * twist, fold * torque
+    twist, torque = np.abs(twist), np.sign(twist) * torque
     kept = twist >= start
     if largest_torque is not None:
         kept &= torque <= largest_torque
@@ -79,8 +80,9 @@ def fit_pair(twist: FloatArray, torque: FloatArray, power: int, edge: float) -> 
 def fit_side(distance: FloatArray, torque: FloatArray) -> tuple[float, float, float]:
     """k1, k2, k3 of  M = k1 s + k2 s^2 + k3 s^3, least squares and rising on [0, S].
 
-    The free fit is taken if it rises.  Else the slope is written in Bernstein polynomials with
-    coefficients >= 0; that is enough for a rising law and slightly more than needed.
+    The free fit is taken if it rises.  Else the slope is built from the extreme rays of the
+    quadratics that are non-negative on [0, 1], (s - r)^2 and s (1 - s), with factors >= 0; r is taken
+    from 101 places, so the fit always rises and is the best one but for that grid.
     """
     end = float(np.max(distance))
     s = distance / end
@@ -90,9 +92,9 @@ def fit_side(distance: FloatArray, torque: FloatArray) -> tuple[float, float, fl
     if min(float(slope(x)) for x in (0.0, 1.0, *turning)) >= 0.0:
         k = free
     else:
-        # integrals of (1-s)^2, 2 s (1-s), s^2
-        c0, c1, c2 = _non_negative([s - s**2 + s**3 / 3.0, s**2 - 2.0 * s**3 / 3.0, s**3 / 3.0], torque)
-        k = np.array([c0, c1 - c0, (c0 - 2.0 * c1 + c2) / 3.0])
+        r = np.linspace(0.0, 1.0, 101)
+        rays = np.concatenate((np.stack([r**2, -r, np.full_like(r, 1.0 / 3.0)]), [[0.0], [0.5], [-1.0 / 3.0]]), axis=1)
+        k = rays @ _non_negative(list((np.stack([s, s**2, s**3], axis=1) @ rays).T), torque)
     return float(k[0]) / end, float(k[1]) / end**2, float(k[2]) / end**3
 
 

@@ -65,7 +65,7 @@ class JumpStiffness(StiffnessLaw):
         lost_motion : rad, the gap; that of the law if not given
         """
         gap = gap_of(curve, lost_motion)
-        twist, torque = one_side(curve, largest_torque, gap / 2.0, sign=0.0)
+        twist, torque = one_side(curve, largest_torque, gap / 2.0, 0)
         linear, cubic = fit_pair(twist, torque, cls.first_power, gap / 2.0)
         values = {"linear": linear, "cubic": cubic, "largest_twist": float(np.max(twist))}
         return cls(lost_motion=gap, **values)

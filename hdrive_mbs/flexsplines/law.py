@@ -56,8 +56,8 @@ class StiffnessLaw(Described):
         if pull[worst] < -1e-9 * float(np.max(np.abs(torques))):
             raise LawError(
                 f"{self.describe()} claims to be restoring but gives {torques[worst]:.4g} N m at a twist of "
-                f"{twists[worst]:.4g} rad: it must not pull away from zero twist. Correct the law, or set "
-                f"'restoring = False' in {type(self).__name__} if it is meant."
+                f"{twists[worst]:.4g} rad: it must not pull away from zero twist. Correct the law or, if this is "
+                "meant, write it as a StiffnessLaw subclass with restoring = False."
             )
 
     def _sampled(self, twists: FloatArray) -> FloatArray:

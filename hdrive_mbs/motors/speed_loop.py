@@ -20,7 +20,9 @@ class SpeedLoop(Described):
     """u = kp e + ki I,   e = w_ref(t) - w,   dI/dt = e,   torque command = u within +-limit.
 
     Anti-windup by conditional integration: dI/dt = 0 while |u| >= limit and e pushes u further out.
-    (Without the last condition a loop with kp = 0 could never leave its limit.)
+    (Without the last condition a loop with kp = 0 could never leave its limit.)  A weakly damped
+    loop, ki J > kp^2, slides along its limit while it comes back from it, and an adaptive solver
+    then takes small steps.
 
     Source: Astrom and Hagglund, PID Controllers, 1995, section 3.5.  Leaves out sampling, filters
     and the quantisation of the encoder.

@@ -97,7 +97,7 @@ class Drive:
     torque(t, angle, speed, states, regions) : N m
     variables(t, angle, speed, states) : one number per tuple of ``edges``
     rates(t, angle, speed, states, regions) : time derivative of each state
-    motion(t) : (angle, speed, acceleration) of a rotor that follows its set speed whatever the torque
+    motion(t, regions) : (angle, speed, acceleration) of a rotor that follows its set speed whatever the torque
     """
 
     torque: Callable[..., float]
@@ -105,7 +105,7 @@ class Drive:
     variables: Callable[..., tuple[float, ...]] = _nothing
     start: tuple[float, ...] = ()
     rates: Callable[..., tuple[float, ...]] = _no_rates
-    motion: Callable[[float], tuple[float, float, float]] | None = None
+    motion: Callable[[float, Sequence[int]], tuple[float, float, float]] | None = None
 
 
 def in_time(function: Pieces | Callable[[float], float]) -> Drive:
@@ -151,3 +151,61 @@ def kloss(*, power: float, speed: float, pole_pairs: int, frequency: float, brea
         return 2.0 * m_b * s_b * s / (s * s + s_b * s_b)
 
     return in_speed(torque)
+
+
+def inverter(*, power: float, speed: float, pole_pairs: int, frequency: float, breakdown: float, ramp_time: float) -> Drive:
+    """Kloss's curve moved along the speed axis: at constant flux the torque depends on w_s(t) - w alone.
+
+    w_s(t) rises linearly from 0 to its nominal value within ramp_time.
+    """
+    nominal = 2.0 * math.pi * frequency / pole_pairs
+    x_b = (nominal - speed) * (breakdown + math.sqrt(breakdown * breakdown - 1.0))
+    m_b = breakdown * power / speed
+
+    def torque(t: float, q: float, w: float, z: Sequence[float], region: Sequence[int]) -> float:
+        fed = nominal * t / ramp_time if region[0] == 0 else nominal
+        x = fed - w
+        return 2.0 * m_b / (x / x_b + x_b / x) if x != 0.0 else 0.0
+
+    return Drive(torque=torque, edges=((ramp_time,),), variables=lambda t, q, w, z: (t,))
+
+
+def servo(*, kp: float, ki: float, limit: float, wanted: float, ramp_time: float) -> Drive:
+    """M = u = kp e + ki I within +-limit; dI/dt = e, but 0 while u is beyond the limit and e drives it further.
+
+    e = w_ref(t) - w with w_ref rising linearly to ``wanted`` within ramp_time.
+    """
+
+    def error(t: float, w: float, ramping: bool) -> float:
+        return (wanted * t / ramp_time if ramping else wanted) - w
+
+    def variables(t: float, q: float, w: float, z: Sequence[float]) -> tuple[float, ...]:
+        e = error(t, w, t < ramp_time)
+        return t, kp * e + ki * z[0], e
+
+    def torque(t: float, q: float, w: float, z: Sequence[float], region: Sequence[int]) -> float:
+        u = kp * error(t, w, region[0] == 0) + ki * z[0]
+        return (-limit, u, limit)[region[1]]
+
+    def rates(t: float, q: float, w: float, z: Sequence[float], region: Sequence[int]) -> tuple[float, ...]:
+        outward = (region[1] == 2 and region[2] == 1) or (region[1] == 0 and region[2] == 0)
+        return (0.0 if outward else error(t, w, region[0] == 0),)
+
+    return Drive(torque=torque, edges=((ramp_time,), (-limit, limit), (0.0,)), variables=variables, start=(0.0,), rates=rates)
+
+
+def speed_ramp(*, end: float, duration: float) -> Drive:
+    """A rotor that runs up linearly and then stays at its speed, whatever torque that takes."""
+
+    def motion(t: float, region: Sequence[int]) -> tuple[float, float, float]:
+        rate = end / duration
+        if region[0] == 0:
+            return 0.5 * rate * t * t, rate * t, rate
+        return end * (t - 0.5 * duration), end, 0.0
+
+    return Drive(
+        torque=lambda t, q, w, z, region: 0.0,
+        edges=((duration,),),
+        variables=lambda t, q, w, z: (t,),
+        motion=motion,
+    )

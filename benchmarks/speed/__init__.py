@@ -1,0 +1,1 @@
+"""How fast the engine is, at which accuracy, against what else one could use."""

@@ -1,0 +1,107 @@
+"""All runs, interleaved, with their errors; and the time of each method at one error."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Sequence
+from typing import Any
+
+import hdrive_mbs as hm
+from benchmarks.machine import machine
+from benchmarks.speed.methods import Method, methods
+from benchmarks.speed.reference import reference
+from benchmarks.speed.start import around_a_run, fresh_processes
+from hdrive_mbs.progress import progress_bar
+from models.harmonic_drive_train import build
+
+TARGET = 1e-6
+CASES = {
+    "train": "the train of models/harmonic_drive_train.py",
+    "light": "the same with B_FS = 5 and B_wwy = 1 N m s/rad in place of 20 and 5",
+}
+"""The dampings of the first make one mode of pure decay with 57,000 1/s; those of the second do not."""
+
+
+def case(name: str) -> hm.Scene:
+    """The scene of a case."""
+    return build() if name == "train" else build().replacing({"gear.damping": 5.0, "output_shaft.damping": 1.0})
+
+
+def study(*, quick: bool, repeats: int) -> dict[str, Any]:
+    """Everything that the report needs."""
+    duration = 0.01 if quick else 1.0
+    facts = machine()
+    plan = {name: methods(case(name), duration) for name in CASES}
+    if quick:
+        plan = {name: [Method(m.name, m.ladder[1:3], m.run) for m in found] for name, found in plan.items()}
+    runs = sum(len(method.ladder) for found in plan.values() for method in found) * repeats
+    cases = {}
+    with progress_bar("speed of the train", runs + 20 * len(CASES)) as report:
+        done = 0
+        for name, found in plan.items():
+            exact = reference(case(name), duration)
+            done += 20
+            seconds: dict[tuple[str, float], list[float]] = {}
+            errors: dict[tuple[str, float], float] = {}
+            steps: dict[tuple[str, float], int] = {}
+            for _ in range(repeats):
+                for method in found:
+                    for setting in method.ladder:
+                        once = method.run(setting)
+                        key = (method.name, setting)
+                        seconds.setdefault(key, []).append(once.seconds)
+                        if key not in errors:
+                            errors[key], steps[key] = exact.error(once.times, once.states), len(once.times) - 1
+                        done += 1
+                        if report is not None:
+                            report(done)
+            cases[name] = {
+                "what": CASES[name],
+                "reference_agreement": exact.agreement,
+                "methods": {method.name: _method(method, seconds, errors, steps) for method in found},
+            }
+    return {
+        "duration": duration,
+        "repeats": repeats,
+        "target_error": TARGET,
+        "cases": cases,
+        "fresh_processes": fresh_processes(1 if quick else 7),
+        "around_a_run": around_a_run(1 if quick else 11, duration),
+        "machine": facts,
+    }
+
+
+Key = tuple[str, float]
+"""Name of a method and its setting."""
+
+
+def _method(method: Method, seconds: dict[Key, list[float]], errors: dict[Key, float], steps: dict[Key, int]) -> dict[str, Any]:
+    keys = [(method.name, setting) for setting in method.ladder]
+    medians = [statistics.median(seconds[key]) for key in keys]
+    error = [errors[key] for key in keys]
+    return {
+        "settings": list(method.ladder),
+        "error": error,
+        "median_seconds": medians,
+        "best_seconds": [min(seconds[key]) for key in keys],
+        "samples": [steps[key] for key in keys],
+        "seconds_at_target": time_at(TARGET, error, medians),
+    }
+
+
+def time_at(target: float, errors: Sequence[float], seconds: Sequence[float]) -> float:
+    """Seconds for an error of at most the target: log-log interpolated; NaN where the ladder does not reach it.
+
+    Between the fastest run that is good enough and the best of the faster ones that are not.
+    """
+    good = [(s, e) for s, e in zip(seconds, errors, strict=True) if e <= target and s > 0.0]
+    if not good:
+        return math.nan
+    fast, fine = min(good)
+    worse = [(s, e) for s, e in zip(seconds, errors, strict=True) if target < e < math.inf and 0.0 < s < fast]
+    if not worse or fine <= 0.0:
+        return fast
+    slow, coarse = min(worse, key=lambda item: item[1])
+    share = math.log(coarse / target) / math.log(coarse / fine)
+    return slow * (fast / slow) ** share

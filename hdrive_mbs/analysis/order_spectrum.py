@@ -1,0 +1,199 @@
+"""Order spectrum: amplitudes per revolution of a shaft, also while its speed changes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from hdrive_mbs.analysis.result import Result
+from hdrive_mbs.analysis.spectrum import chosen_history, chosen_span, folding_note, sample_count
+from hdrive_mbs.analysis.time_response import Response
+from hdrive_mbs.analysis.windows import line_amplitudes, local_maxima, window_named
+from hdrive_mbs.errors import AnalysisError, ParameterError
+from hdrive_mbs.signals import FloatArray, TimeHistory
+
+TURN = 2.0 * np.pi
+
+
+class OrderPeak(NamedTuple):
+    """A line of an order spectrum: order and amplitude, 0-peak."""
+
+    order: float
+    amplitude: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class OrderSpectrum(Result):
+    """One-sided amplitude spectrum over orders of a shaft; every amplitude is 0-peak.
+
+    An order is a number of periods per revolution of the shaft ``against``.
+
+    channel, unit : of the signal and of its amplitudes
+    order : shape (m,), from 0
+    amplitude : 0-peak, shape (m,); order 0 holds the size of the mean over the angle
+    phase : of a cosine, at the start of the span [rad]
+    mean : over the angle
+    revolutions : of the shaft, over the span analysed
+    start, end : the span analysed [s]
+    slowest, fastest : speed of the shaft over the span [rad/s]
+    """
+
+    channel: str
+    unit: str
+    against: str
+    order: FloatArray
+    amplitude: FloatArray
+    phase: FloatArray
+    mean: float
+    window: str
+    revolutions: float
+    start: float
+    end: float
+    samples: int
+    slowest: float
+    fastest: float
+
+    @property
+    def resolution(self) -> float:
+        """Distance of two lines in orders: one over the number of revolutions."""
+        return 1.0 / self.revolutions
+
+    def peaks(self, count: int = 10, *, above: float = 0.01) -> tuple[OrderPeak, ...]:
+        """The largest maxima, largest first, with order and amplitude interpolated between lines.
+
+        above : smallest amplitude that counts, as a share of the largest
+        """
+        found = local_maxima(self.amplitude, window_named(self.window), count, above)
+        return tuple(OrderPeak(position * self.resolution, height) for position, height in found)
+
+    def columns(self) -> dict[str, np.ndarray]:
+        return {
+            f"order of {self.against} [1]": self.order,
+            f"{self.channel} amplitude 0-peak [{self.unit}]": self.amplitude,
+            "phase [rad]": self.phase,
+        }
+
+
+def order_spectrum(
+    source: Response | TimeHistory,
+    channel: str | None = None,
+    *,
+    against: str | TimeHistory = "motor.angle",
+    window: str = "hann",
+    start: float | None = None,
+    end: float | None = None,
+    samples_per_revolution: float | None = None,
+    whole_revolutions: bool = True,
+) -> OrderSpectrum:
+    """Amplitude spectrum (0-peak) over orders of a shaft: the signal is sampled evenly in its angle.
+
+    against : angle of the shaft, by channel ("motor.angle") or place ("motor"), or a time history [rad]
+    start, end : part of the record to analyse [s]; all of it if not given
+    samples_per_revolution : if not given, from the shortest usual step of the record
+    whole_revolutions : end the span at the last whole revolution, so that whole orders fall on lines
+
+    A line of constant order is sharp however the speed changes; the amplitude shown is its mean over
+    the revolutions.  Something of constant frequency is smeared instead.  Raises AnalysisError when
+    the angle does not run in one direction over the span, or by less than one revolution.
+    """
+    history, scene = chosen_history(source, channel)
+    shaft = _shaft(source, against)
+    shape = window_named(window)
+    begin, finish = chosen_span(history, start, end)
+    begin, finish = chosen_span(shaft, begin, finish)
+    inside = shaft.between(begin, finish)
+    times = np.unique(np.concatenate([[begin], inside.times, [finish]]))
+    angles, speeds = shaft.at(times), _speed(shaft, times)
+    direction = _direction(shaft.name, times, angles, speeds)
+    turns = abs(angles[-1] - angles[0]) / TURN
+    if turns < 1.0 - 1e-9:
+        raise AnalysisError(
+            f"{shaft.name} turns by only {turns:.3g} revolutions from {begin:g} s to {finish:g} s; an order spectrum needs at least 1. "
+            "Take a longer run, or a shaft that turns faster."
+        )
+    if whole_revolutions:
+        turns = float(np.floor(turns * (1.0 + 1e-9)))
+    span = TURN * turns
+    step = None if samples_per_revolution is None else TURN / samples_per_revolution
+    count = sample_count(history.name, angles, span, step, "rad")
+    wanted = angles[0] + direction * span / count * np.arange(count + 1)
+    at = _times_of(wanted, times, angles, speeds)
+    values = history.at(at[:-1])
+    amplitude, phase = line_amplitudes(values, shape)
+    last = float(at[-1])
+    covered = np.abs(speeds[times <= last])
+    return OrderSpectrum(
+        scene=scene,
+        status=folding_note(amplitude, f"order {0.5 * count / turns:.4g}", "give more samples_per_revolution"),
+        settings={"window": window, "against": shaft.name, "start": begin, "end": last, "whole_revolutions": whole_revolutions},
+        channel=history.name,
+        unit=history.unit,
+        against=shaft.name.removesuffix(".angle"),
+        order=np.arange(len(amplitude)) / turns,
+        amplitude=amplitude,
+        phase=phase,
+        mean=float(np.mean(values)),
+        window=window,
+        revolutions=turns,
+        start=begin,
+        end=last,
+        samples=count,
+        slowest=float(covered.min()),
+        fastest=float(covered.max()),
+    )
+
+
+def _shaft(source: Response | TimeHistory, against: str | TimeHistory) -> TimeHistory:
+    if isinstance(against, TimeHistory):
+        return against
+    if isinstance(source, TimeHistory):
+        raise ParameterError(f"against = {against!r} names a channel, but a single time history has none; give the angle as a TimeHistory.")
+    return source[against if against in source else f"{against}.angle"]
+
+
+def _speed(shaft: TimeHistory, times: FloatArray) -> FloatArray:
+    """Slope of the interpolated angle."""
+    from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
+
+    if shaft.slope is not None:
+        return np.asarray(CubicHermiteSpline(shaft.times, shaft.values, shaft.slope)(times, 1), float)
+    return np.asarray(PchipInterpolator(shaft.times, shaft.values)(times, 1), float)
+
+
+def _direction(name: str, times: FloatArray, angles: FloatArray, speeds: FloatArray) -> float:
+    """+1 or -1; raises AnalysisError where the shaft stands or turns back."""
+    direction = 1.0 if angles[-1] >= angles[0] else -1.0
+    backwards = direction * speeds <= 0.0
+    backwards[[0, -1]] = direction * speeds[[0, -1]] < 0.0  # the run may start or end at rest
+    backwards[1:] |= direction * np.diff(angles) <= 0.0
+    if backwards.any():
+        moving = np.nonzero(backwards)[0]
+        raise AnalysisError(
+            f"{name} does not run in one direction: at t = {times[moving[0]]:.6g} s it stands still or turns back "
+            f"({speeds[moving[0]]:.3g} rad/s; last at {times[moving[-1]]:.6g} s). An angle that repeats cannot be the axis; "
+            f"choose start and end where the shaft keeps turning."
+        )
+    return direction
+
+
+def _times_of(wanted: FloatArray, times: FloatArray, angles: FloatArray, speeds: FloatArray) -> FloatArray:
+    """Times at which the (Hermite) angle takes the wanted values: bisection within each own step."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    curve = CubicHermiteSpline(times, angles, speeds)
+    direction = 1.0 if angles[-1] >= angles[0] else -1.0
+    place = np.clip(np.searchsorted(direction * angles, direction * wanted, side="right") - 1, 0, len(times) - 2)
+    low, high = times[place], times[place + 1]
+    guess = low + (high - low) * (wanted - angles[place]) / (angles[place + 1] - angles[place])
+    for _ in range(60):
+        error = direction * (curve(guess) - wanted)
+        low, high = np.where(error < 0.0, guess, low), np.where(error < 0.0, high, guess)
+        slope = direction * curve(guess, 1)
+        newton = guess - error / np.where(slope > 0.0, slope, 1.0)
+        new = np.where((slope > 0.0) & (newton >= low) & (newton <= high), newton, 0.5 * (low + high))
+        if np.max(np.abs(new - guess)) <= 1e-15 * max(abs(times[-1]), 1e-300):
+            break
+        guess = new
+    return np.asarray(np.clip(guess, times[0], times[-1]), float)
