@@ -12,6 +12,7 @@ from hdrive_mbs.analysis.order_spectrum import OrderSpectrum as OrderSpectrum
 from hdrive_mbs.analysis.order_spectrum import order_spectrum as order_spectrum
 from hdrive_mbs.analysis.reduction import Reduction as Reduction
 from hdrive_mbs.analysis.reduction import reduce as reduce
+from hdrive_mbs.analysis.reduction import with_rigid_shafts as with_rigid_shafts
 from hdrive_mbs.analysis.result import Result as Result
 from hdrive_mbs.analysis.result import load as load
 from hdrive_mbs.analysis.spectrum import Spectrum as Spectrum
@@ -58,6 +59,7 @@ from hdrive_mbs.engine.solvers import Trapezoidal as Trapezoidal
 from hdrive_mbs.errors import AnalysisError as AnalysisError
 from hdrive_mbs.errors import FileFormatError as FileFormatError
 from hdrive_mbs.errors import HdriveError as HdriveError
+from hdrive_mbs.errors import KeywordError as KeywordError
 from hdrive_mbs.errors import LawError as LawError
 from hdrive_mbs.errors import ParameterError as ParameterError
 from hdrive_mbs.errors import PlaceError as PlaceError

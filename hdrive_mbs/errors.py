@@ -13,6 +13,10 @@ class ParameterError(HdriveError, ValueError):
     """A parameter value is outside what its law or part allows."""
 
 
+class KeywordError(HdriveError, TypeError):
+    """A part, law or effect has no such field, or its values are not given by name."""
+
+
 class UnitError(HdriveError, ValueError):
     """A unit is unknown or does not fit the quantity."""
 

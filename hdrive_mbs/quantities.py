@@ -6,13 +6,14 @@ SI inside.  Convert at the door: ``speed=rpm(1410)``, ``lost_motion=arcmin(9)``.
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
-from hdrive_mbs.errors import ParameterError, unknown_place
+from hdrive_mbs.errors import KeywordError, ParameterError, unknown_place
 
 
 def rpm(value: float) -> float:
@@ -131,26 +132,39 @@ class Described:
 
     _kind: ClassVar[str] = "object"
 
+    def __new__(cls, *values: Any, **fields: Any) -> Self:
+        known = [field.name for field in dataclasses.fields(cls) if field.init]
+        if values:
+            raise KeywordError(f"{cls.__name__}({values[0]!r}): values are given by name. It has: {', '.join(known)}.")
+        for name in fields:
+            if name not in known and name not in inspect.signature(cls).parameters:
+                raise KeywordError(f"No field {name!r}. {cls.__name__} has: {', '.join(known)}.")
+        return super().__new__(cls)
+
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):
             quantity: Quantity | None = field.metadata.get("quantity")
+            value = getattr(self, field.name)
+            if value is None and field.default is None:
+                continue
             if quantity is not None:
-                self._check_field(field.name, quantity)
+                self._check_field(field.name, value, quantity)
+            else:
+                _check_option(f"{type(self).__name__}.{field.name}", value, str(field.type), field.metadata.get("doc", ""))
         self.check()
 
-    def _check_field(self, name: str, quantity: Quantity) -> None:
+    def _check_field(self, name: str, value: Any, quantity: Quantity) -> None:
         where = f"{type(self).__name__}.{name}"
-        value = getattr(self, name)
         if quantity.sequence:
             try:
-                numbers = tuple(_as_float(f"{where}[{i}]", item) for i, item in enumerate(value))
+                numbers = tuple(_as_float(f"{where}[{i}]", item, quantity.unit) for i, item in enumerate(value))
             except TypeError:
                 raise ParameterError(f"{where} = {value!r}: must be a sequence of numbers in {quantity.unit}.") from None
             for index, number in enumerate(numbers):
                 quantity.check(f"{where}[{index}]", number)
             object.__setattr__(self, name, numbers)
-        elif value is not None:
-            number = _as_float(where, value)
+        else:
+            number = _as_float(where, value, quantity.unit)
             quantity.check(where, number)
             object.__setattr__(self, name, number)
 
@@ -205,13 +219,32 @@ class Described:
         return self.describe()
 
 
-def _as_float(where: str, value: Any) -> float:
+def _as_float(where: str, value: Any, unit: str) -> float:
+    wanted = "must be a number" if unit == "1" else f"must be a number, in {unit}"
     if isinstance(value, (str, bytes, bool)):
-        raise ParameterError(f"{where} = {value!r}: must be a number.")
+        raise ParameterError(f"{where} = {value!r}: {wanted}.")
     try:
         return float(value)
     except (TypeError, ValueError):
-        raise ParameterError(f"{where} = {value!r}: must be a number.") from None
+        raise ParameterError(f"{where} = {value!r}: {wanted}.") from None
+    except OverflowError:
+        raise ParameterError(f"{where}: must be a finite number, this one has over 300 digits.") from None
+
+
+def _check_option(where: str, value: Any, annotation: str, doc: str) -> None:
+    """Refuse a switch that is no bool, a name that is no text, and a law that cannot be called."""
+    kinds = {kind.strip() for kind in annotation.split("|")}
+    if kinds == {"bool"} and not isinstance(value, bool):
+        raise ParameterError(f"{where} = {value!r}: must be True or False ({doc}).")
+    if kinds <= {"str", "None"} and not isinstance(value, str):
+        raise ParameterError(f"{where} = {value!r}: must be a text ({doc}).")
+    if "Callable[" in annotation and isinstance(value, type) and issubclass(value, Described):
+        raise ParameterError(f"{where} = {value.__name__} is a class; give an object of it: {value.__name__}(...).")
+    if "Callable[" in annotation and not callable(value):
+        only_function = annotation.startswith("Callable[")
+        if only_function or not isinstance(value, Described):
+            wanted = "a Python function" if only_function else "a law of the library or a Python function"
+            raise ParameterError(f"{where} = {_readable(value, None)}: must be {wanted} ({doc}).")
 
 
 def _readable(value: Any, quantity: Quantity | None) -> str:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import Any
 
 from hdrive_mbs.components.component import Component
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import LawError, PlaceError, SceneError, unknown_place
+from hdrive_mbs.network.claims import check_claims
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.quantities import FreeParameter, snake_case
 from hdrive_mbs.topology import GROUND, check_connections, resolve_flanges, start_draft
@@ -45,18 +47,28 @@ class Scene:
     _cache: dict[str, Network] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "parts", dict(self.parts))
+        if not isinstance(self.name, str):
+            raise SceneError(f"Scene name {self.name!r}: must be a text.")
+        if not isinstance(self.parts, Mapping) or not self.parts:
+            raise SceneError(f"Scene {self.name!r} has no parts; give parts={{'motor': Motor(...), ...}}.")
+        for chain in self.connections:
+            if isinstance(chain, str) or isinstance(self.connections, str):
+                raise SceneError(f"connections = {self.connections!r}: must be a list of chains, like [('motor', 'shaft', 'load')].")
+        object.__setattr__(self, "parts", MappingProxyType(dict(self.parts)))
         object.__setattr__(self, "connections", tuple(tuple(chain) for chain in self.connections))
         object.__setattr__(self, "effects", tuple(self.effects))
+        for placed in self.effects:
+            if not isinstance(placed.effect, Effect):
+                raise SceneError(f"{placed.name!r} is a {type(placed.effect).__name__}, not an effect.")
         for name, part in self.parts.items():
-            if not name.isidentifier() or name == GROUND:
+            if not isinstance(name, str) or not name.isidentifier() or name == GROUND:
                 raise SceneError(f"Part name {name!r}: use a plain word (letters, digits, underscore), and not 'ground'.")
             if not isinstance(part, Component):
                 raise SceneError(f"Part {name!r} is a {type(part).__name__}, not a component.")
         check_connections(self.parts, self.connections)
 
     def __hash__(self) -> int:
-        return hash((self.name, tuple(self.parts), self.connections))
+        return hash((self.name, frozenset(self.parts), self.connections))
 
     # -- changes ---------------------------------------------------------------------------------
     def with_effect(self, effect: Effect, *, at: str, name: str | None = None) -> Scene:
@@ -158,11 +170,16 @@ class Scene:
                 part.build(name, draft)
             for placed in self.effects:
                 placed.effect.apply(draft, placed.at, placed.name)
-            self._cache["network"] = draft.finish()
+            network = draft.finish()
+            check_claims(network)
+            self._cache["network"] = network
         return self._cache["network"]
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_cache": {}}
+        return {**self.__dict__, "parts": dict(self.parts), "_cache": {}}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, parts=MappingProxyType(state["parts"]))
 
     def __str__(self) -> str:
         return describe(self)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import importlib
+import inspect
 import json
 import os
 import pkgutil
@@ -12,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from hdrive_mbs import components, effects, flexsplines, loads, motors
+from hdrive_mbs import components, effects, flexsplines, loads, motors, teeth
 from hdrive_mbs.components.component import Component
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import FileFormatError, HdriveError, UnitError, unknown_place
@@ -94,7 +95,7 @@ def load_scene(path: str | os.PathLike[str], types: Iterable[type[Described]] = 
     try:
         text = source.read_bytes().decode("utf-8")
     except OSError as error:
-        raise FileFormatError(f"{path}: cannot be read ({error.strerror}).") from error
+        raise FileFormatError(f"{path}: cannot be read ({error.strerror or error}).") from error
     except UnicodeDecodeError as error:
         raise FileFormatError(f"{path} is not a text file in UTF-8 ({error}).") from error
     try:
@@ -105,6 +106,8 @@ def load_scene(path: str | os.PathLike[str], types: Iterable[type[Described]] = 
         return scene_from_dict(document, types)
     except HdriveError as error:
         raise type(error)(f"{path}: {error}") from error
+    except RecursionError as error:
+        raise FileFormatError(f"{path} cannot be parsed: its tables are nested too deep.") from error
 
 
 def scene_from_dict(document: Any, types: Iterable[type[Described]] = ()) -> Scene:
@@ -158,7 +161,7 @@ def all_types() -> dict[str, type[Described]]:
 
 
 def _known_types(extra: Iterable[type[Described]]) -> dict[str, type[Described]]:
-    for package in (components, effects, flexsplines, loads, motors):
+    for package in (components, effects, flexsplines, loads, motors, teeth):
         for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
             importlib.import_module(module.name)
     found: dict[str, type[Described]] = {}
@@ -173,7 +176,7 @@ def _known_types(extra: Iterable[type[Described]]) -> dict[str, type[Described]]
 def _build(entry: Any, where: str, base: type[Described], known: Mapping[str, type[Described]]) -> Described:
     data = dict(_as_mapping(entry, where))
     name = data.pop("type", None)
-    kinds = {key: kind for key, kind in known.items() if issubclass(kind, base)}
+    kinds = {key: kind for key, kind in known.items() if issubclass(kind, base) and not inspect.isabstract(kind)}
     kind = kinds.get(name) if isinstance(name, str) else None
     if kind is None:
         raise unknown_place("type", str(name), sorted(kinds), f"{where}: this entry")
@@ -191,7 +194,12 @@ def _build(entry: Any, where: str, base: type[Described], known: Mapping[str, ty
     ]
     if missing:
         raise FileFormatError(f"{where}: {', '.join(missing)} of {kind.__name__} missing.")
-    return kind(**values)
+    try:
+        return kind(**values)
+    except HdriveError:
+        raise
+    except Exception as error:  # a class of a user's own, or a base class that is not meant to be built
+        raise FileFormatError(f"{where}: no {kind.__name__} can be made of these values ({type(error).__name__}: {error}).") from error
 
 
 def _value(value: Any, path: str, quantity: Quantity | None, known: Mapping[str, type[Described]]) -> Any:

@@ -46,6 +46,8 @@ def joints(parts: Mapping[str, Component], connections: Sequence[Sequence[str]])
         if len(chain) < 2:
             raise SceneError(f"Connection {tuple(chain)}: a connection names at least two places.")
         for left, right in itertools.pairwise(chain):
+            if left == right and left in resolve_flanges(parts):
+                raise SceneError(f"Connection {tuple(chain)} joins {left!r} to itself; name each place once.")
             pairs.append((_end(left, parts, leaving=True), _end(right, parts, leaving=False)))
     return pairs
 
@@ -126,13 +128,16 @@ def _ideal_ratios(parts: Mapping[str, Component], names: Mapping[str, str]) -> d
         for flange_data in part.flanges():
             if flange_data.optional:
                 add({names[_path(name, flange_data)]: 1.0}, 0.0, weight=1e-6)
-    if GROUND in index:
-        add({GROUND: 1.0}, 0.0)
     motor = next((name for name, part in parts.items() if isinstance(part, Motor)), None)
     reference = names[motor] if motor else next((node for node in nodes if node != GROUND), nodes[0])
-    add({reference: 1.0}, 1.0, weight=1e3)
-    solution = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0]
-    return {node: float(solution[i]) for node, i in index.items()}
+    known = {reference: 1.0, GROUND: 0.0}  # exactly, whatever shafts to the ground would like
+    free = [i for node, i in index.items() if node not in known]
+    matrix, wanted = np.array(rows).reshape(-1, len(nodes)), np.array(right)
+    for node, value in known.items():
+        wanted = wanted - value * matrix[:, index[node]]
+    solution = np.linalg.lstsq(matrix[:, free], wanted, rcond=None)[0] if free else np.zeros(0)
+    ratios = {nodes[i]: float(value) for i, value in zip(free, solution)} | known
+    return {node: ratios[node] for node in nodes}
 
 
 def start_draft(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> Draft:

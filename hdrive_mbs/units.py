@@ -9,6 +9,9 @@ from typing import Any
 
 from hdrive_mbs.errors import UnitError
 
+_UNIT = re.compile(r"(?:\s*(?:[^\W\d]\w*+|[%°1]|[*/·()])(?:\s*(?:\*\*|\^)\s*[+-]?\d{1,2}(?![\w.]))?)+\s*")
+"""Names, signs and small whole powers: all that a unit needs (pint would work out ``9**9**9`` for ever)."""
+
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 
 
@@ -42,12 +45,29 @@ def factor(given: str, unit: str, where: str) -> float:
 
     registry = _registry()
     target = "dimensionless" if unit == "1" else unit
+    if len(given) > 100 or _UNIT.fullmatch(given) is None:
+        raise UnitError(f"{where}: unit {given[:40]!r} cannot be read; use for instance {unit}.")
     try:
-        value = registry.Quantity(1.0, given).to(target).magnitude
+        value = float(registry.Quantity(1.0, given).to(target).magnitude)
+        at_zero = float(registry.Quantity(0.0, given).to(target).magnitude)
+        mixed = any(_cycles(registry, a) and _radians(registry, b) for a, b in ((given, target), (target, given)))
     except pint.DimensionalityError:
         raise UnitError(f"{where}: unit {given!r} does not fit; it must be convertible to {unit}.") from None
     except Exception as error:  # pint raises many kinds for text it cannot parse
-        raise UnitError(f"{where}: unit {given!r} is not known ({error}); use for instance {unit}.") from None
-    if not math.isfinite(float(value)):
+        reason = f" ({error})" if str(error) else ""
+        raise UnitError(f"{where}: unit {given!r} is not known{reason}; use for instance {unit}.") from None
+    if mixed:
+        raise UnitError(f"{where}: {given!r} and {unit} differ by 2 pi (Hz counts turns, rad/s radians); write it in {unit}.")
+    if at_zero != 0.0:
+        raise UnitError(f"{where}: unit {given!r} is not proportional to {unit} (it is a level or has an offset); write it in {unit}.")
+    if not math.isfinite(value):
         raise UnitError(f"{where}: unit {given!r} has no finite factor to {unit}.")
-    return float(value)
+    return value
+
+
+def _cycles(registry: Any, unit: str) -> bool:
+    return any(name.endswith("hertz") for name in registry.parse_units(unit)._units)
+
+
+def _radians(registry: Any, unit: str) -> bool:
+    return "radian" in registry.get_base_units(registry.parse_units(unit))[1]._units

@@ -23,6 +23,12 @@ RESOLUTION = 1e-14
 """Twist [rad] below which a gap counts as rounding."""
 
 
+def elastic_laws(network: Network) -> dict[str, ElasticLaw]:
+    """The elastic law of every connection that has one, by name."""
+    laws = {element.name: ElasticLaw.of(network, element.name) for element in network.elements if isinstance(element, Connection)}
+    return {name: law for name, law in laws.items() if law.resists}
+
+
 class _Seen(Mapping[str, float]):
     """States at their initial values; remembers which of them a law looks at."""
 
@@ -63,6 +69,12 @@ class ElasticLaw:
         connection.torque(moment, 1e-3, 0.0)
         connection.torque(moment, -1e-3, 0.0)
         return cls(connection, moment, tuple(states.seen))
+
+    @property
+    def resists(self) -> bool:
+        """Whether some twist gives a torque at rest (friction along a connection does not)."""
+        sizes = np.geomspace(1e-7, 10.0, 100)
+        return bool(np.any(self.torque(np.concatenate([-sizes, sizes])) != 0.0))
 
     def torque(self, twist: npt.ArrayLike) -> FloatArray:
         """Elastic torque [N m] at a twist [rad], point by point where the law takes no arrays."""

@@ -79,10 +79,11 @@ class EnergyBalance(Result):
 def energy_balance(response: Response) -> EnergyBalance:
     """Where the energy and the angular momentum of a run come from and go to.
 
-    Between two steps of the solver the angles are interpolated by quintic Hermite polynomials (angle,
-    speed and acceleration at both ends), and powers and torques are integrated with four Gauss
-    points per step.  So the residuals show the error of the solver: the quadrature is of higher
-    order than it.  The elastic energy of a connection is the area under its law at rest.
+    Within each step of the solver the angles are interpolated by quintic Hermite polynomials (angle,
+    speed and acceleration at both ends), and powers and torques are integrated with four Gauss points.
+    That is of order 5, no lower than any of the solvers, so the residuals show the error of the
+    solver; only in the steps in which a law jumps the quadrature has an error of its own.  The elastic
+    energy of a connection is the area under its law at rest.
 
     Raises AnalysisError for a response without its scene, or recorded more coarsely than the
     solver's own steps.

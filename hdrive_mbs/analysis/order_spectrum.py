@@ -169,11 +169,13 @@ def _direction(name: str, times: FloatArray, angles: FloatArray, speeds: FloatAr
     backwards[[0, -1]] = direction * speeds[[0, -1]] < 0.0  # the run may start or end at rest
     backwards[1:] |= direction * np.diff(angles) <= 0.0
     if backwards.any():
-        moving = np.nonzero(backwards)[0]
+        turning = np.nonzero(np.sign(speeds[1:]) * np.sign(speeds[:-1]) <= 0.0)[0]
+        where = turning if len(turning) else np.nonzero(backwards)[0]
+        first, last = times[where[0]], times[where[-1]]
+        when = f"at t = {first:.4g} s" if first == last else f"first at t = {first:.4g} s and last at t = {last:.4g} s"
         raise AnalysisError(
-            f"{name} does not run in one direction: at t = {times[moving[0]]:.6g} s it stands still or turns back "
-            f"({speeds[moving[0]]:.3g} rad/s; last at {times[moving[-1]]:.6g} s). An angle that repeats cannot be the axis; "
-            f"choose start and end where the shaft keeps turning."
+            f"{name} does not run in one direction: it stands still or turns back {when}. An angle that repeats cannot be the axis; "
+            "choose start and end where the shaft keeps turning."
         )
     return direction
 

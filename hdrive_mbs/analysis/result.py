@@ -9,7 +9,7 @@ import io
 import json
 import os
 import platform
-import zipfile
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import metadata
@@ -18,7 +18,7 @@ from typing import Any, BinaryIO, Self
 
 import numpy as np
 
-from hdrive_mbs.errors import FileFormatError
+from hdrive_mbs.errors import FileFormatError, HdriveError
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.scene_file import scene_from_dict, scene_to_dict
 from hdrive_mbs.writing import write_text, write_whole
@@ -78,12 +78,12 @@ class Result:
             "fields": head,
             "scene": scene,
             "scene_problem": problem,
-            "sha256": _checksum(arrays),
         }
+        document["sha256"] = _checksum(document, arrays)
         packed = np.frombuffer(json.dumps(document).encode(), dtype=np.uint8)
 
         def write(file: BinaryIO) -> None:
-            np.savez_compressed(file, allow_pickle=False, head=packed, **arrays)
+            np.savez_compressed(file, head=packed, **arrays)  # type: ignore[arg-type]
 
         return write_whole(path, write)
 
@@ -100,7 +100,8 @@ def load(path: str | os.PathLike[str]) -> Result:
     """Read any saved result.
 
     Raises FileFormatError when the file is missing, truncated, changed, or not a result of ours.
-    No code is executed from the file.
+    Warns and leaves ``scene`` None when only the scene cannot be made again (it names a class of a
+    user's own that is not imported).  No code is executed from the file.
     """
     try:
         with np.load(Path(path), allow_pickle=False) as archive:
@@ -108,22 +109,36 @@ def load(path: str | os.PathLike[str]) -> Result:
         document = json.loads(bytes(arrays.pop("head")).decode())
     except FileNotFoundError:
         raise FileFormatError(f"{path}: no such file.") from None
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, UnicodeDecodeError, TypeError, AttributeError) as error:
+    except Exception as error:  # zip, zlib, numpy and json each raise their own kinds for a damaged file
         raise FileFormatError(f"{path} is not a result of hdrive_mbs, or it is truncated ({error}).") from error
-    if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise FileFormatError(f"{path} is not in the format {FORMAT!r}.")
-    if document.get("sha256") != _checksum(arrays):
+    found = document.get("format") if isinstance(document, dict) else None
+    if found != FORMAT:
+        newer = " A newer version of hdrive_mbs wrote it; update this one." if str(found).startswith(FORMAT[:-1]) else ""
+        raise FileFormatError(f"{path} is not in the format {FORMAT!r} (found {found!r}).{newer}")
+    if document.pop("sha256", None) != _checksum(document, arrays):
         raise FileFormatError(f"{path}: the checksum does not fit; the file was changed or damaged.")
     kinds = {kind.__name__: kind for kind in _subclasses(Result)}
     kind = kinds.get(document["result"])
     if kind is None:
         raise FileFormatError(f"{path} holds a {document['result']!r}, which this version does not know.")
     values = {name: _unpack(value, arrays) for name, value in document["fields"].items()}
-    known = {item.name for item in dataclasses.fields(kind)}
-    if not set(values) <= known:
-        raise FileFormatError(f"{path}: unknown fields {sorted(set(values) - known)} for a {kind.__name__}.")
-    scene = scene_from_dict(document["scene"]) if document["scene"] is not None else None
-    return kind(scene=scene, **values)
+    fields = {item.name: item for item in dataclasses.fields(kind) if item.name != "scene"}
+    unset = dataclasses.MISSING
+    needed = {name for name, item in fields.items() if item.default is unset and item.default_factory is unset}
+    if not needed <= set(values) <= set(fields):
+        odd = sorted((needed - set(values)) | (set(values) - set(fields)))
+        raise FileFormatError(f"{path}: the fields of a {kind.__name__} have changed with the version ({', '.join(odd)}).")
+    return kind(scene=_unpacked_scene(document["scene"], path), **values)
+
+
+def _unpacked_scene(document: dict[str, Any] | None, path: str | os.PathLike[str]) -> Scene | None:
+    if document is None:
+        return None
+    try:
+        return scene_from_dict(document)
+    except HdriveError as error:
+        warnings.warn(f"{path}: the numbers are complete, but the scene cannot be made again ({error}).", stacklevel=3)
+        return None
 
 
 def _subclasses(kind: type[Result]) -> list[type[Result]]:
@@ -152,17 +167,19 @@ def _packed_scene(scene: Scene | None) -> tuple[dict[str, Any] | None, str]:
         return None, str(error)
 
 
-def _checksum(arrays: Mapping[str, np.ndarray]) -> str:
-    digest = hashlib.sha256()
+def _checksum(document: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> str:
+    digest = hashlib.sha256(json.dumps(document).encode())
     for name in sorted(arrays):
         digest.update(name.encode())
-        digest.update(str(arrays[name].dtype).encode())
+        digest.update(f"{arrays[name].dtype} {arrays[name].shape}".encode())
         digest.update(np.ascontiguousarray(arrays[name]).tobytes())
     return digest.hexdigest()
 
 
 def _pack(value: Any, path: str, arrays: dict[str, np.ndarray]) -> Any:
     if isinstance(value, np.ndarray):
+        if value.dtype == object:
+            raise TypeError(f"{path}: an array of Python objects cannot be saved; results hold arrays of numbers.")
         arrays[path] = value
         return {"array": path}
     if isinstance(value, Mapping):

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hdrive_mbs.analysis.elastic_law import ElasticLaw
+from hdrive_mbs.analysis.elastic_law import elastic_laws
 from hdrive_mbs.analysis.time_response import Response, simulate
 from hdrive_mbs.components.motor import Motor
 from hdrive_mbs.engine.solvers import Solver
 from hdrive_mbs.errors import SceneError
-from hdrive_mbs.network.elements import Connection
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray, TimeHistory
 
@@ -79,11 +78,10 @@ def start_up(
     final = _mean(speed, end * (1.0 - LAST_PART), end)
     before = _mean(speed, end * (1.0 - 2.0 * LAST_PART), end * (1.0 - LAST_PART))
     rise_time = _first_reached(speed, RISEN * final) if final != 0.0 else float("nan")
-    network = scene.network()
-    connections = [element.name for element in network.elements if isinstance(element, Connection)]
-    torques = {item: response[f"{item}.torque"] for item in connections}
+    laws = elastic_laws(scene.network())
+    torques = {item: response[f"{item}.torque"] for item in laws}
     largest = {item: int(np.argmax(np.abs(history.values))) for item, history in torques.items()}
-    gaps = {item: ElasticLaw.of(network, item).edges() for item in connections}
+    gaps = {item: law.edges() for item, law in laws.items()}
     air_gap = f"{name}.torque"
     fields = {item.name: getattr(response, item.name) for item in dataclasses.fields(response)}
     return StartUp(

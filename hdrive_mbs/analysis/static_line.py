@@ -13,9 +13,8 @@ import numpy.typing as npt
 from scipy.linalg import null_space
 from scipy.optimize import root
 
-from hdrive_mbs.analysis.elastic_law import ElasticLaw
+from hdrive_mbs.analysis.elastic_law import ElasticLaw, elastic_laws
 from hdrive_mbs.errors import AnalysisError, unknown_place
-from hdrive_mbs.network.elements import Connection
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.scene import Scene
 
@@ -112,16 +111,16 @@ def static_line(scene: Scene, held: str, loaded: str) -> StaticLine:
     if node[loaded] in fixed:
         raise AnalysisError(f"{loaded!r} is held itself, so nothing twists; load another place than {held!r}.")
     free = [body.name for body in network.bodies if body.name not in fixed]
-    connections = [element for element in network.elements if isinstance(element, Connection)]
-    matrix = np.array([[c.factors.get(name, 0.0) for c in connections] for name in free])
+    laws = list(elastic_laws(network).values())
+    matrix = np.array([[law.connection.factors.get(name, 0.0) for law in laws] for name in free])
     # equilibrium of each free body:  sum_c f_ic T_c = -T at the loaded one (a load resists forward)
     right = np.array([-1.0 if name == node[loaded] else 0.0 for name in free])
-    if not connections or not np.allclose(matrix @ (unit := np.linalg.lstsq(matrix, right, rcond=None)[0]), right, atol=1e-9):
+    if not laws or not np.allclose(matrix @ (unit := np.linalg.lstsq(matrix, right, rcond=None)[0]), right, atol=1e-9):
         raise AnalysisError(f"{loaded!r} turns freely while {held!r} is held: no connection carries a torque between them.")
     spare = null_space(matrix, rcond=1e-10)
     used = (np.abs(unit) > 1e-12) | (np.abs(spare) > 1e-12).any(axis=1)
-    laws = tuple(ElasticLaw.of(network, c.name) for c, is_used in zip(connections, used, strict=True) if is_used)
-    return StaticLine(loaded, laws, unit[used], spare[used])
+    carrying = tuple(law for law, is_used in zip(laws, used, strict=True) if is_used)
+    return StaticLine(loaded, carrying, unit[used], spare[used])
 
 
 def _node(network: Network, place: str) -> str:

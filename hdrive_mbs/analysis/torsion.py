@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.analysis.elastic_law import ElasticLaw
+from hdrive_mbs.analysis.elastic_law import ElasticLaw, elastic_laws
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.static_line import StaticLine, static_line
 from hdrive_mbs.analysis.torsion_loop import slow_loop
 from hdrive_mbs.components.harmonic_drive import HarmonicDrive
 from hdrive_mbs.errors import AnalysisError, ParameterError, unknown_place
-from hdrive_mbs.network.elements import Connection
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.scene import Scene
 
@@ -132,11 +131,10 @@ def _edges(line: StaticLine) -> tuple[float, float]:
 
 
 def _single(scene: Scene, at: str) -> StaticLine:
-    network = scene.network()
-    known = [element.name for element in network.elements if isinstance(element, Connection)]
-    if at not in known:
-        raise unknown_place("connection", at, known)
-    return StaticLine(at, (ElasticLaw.of(network, at),), np.ones(1), np.zeros((1, 0)))
+    laws = elastic_laws(scene.network())
+    if at not in laws:
+        raise unknown_place("connection", at, laws)
+    return StaticLine(at, (laws[at],), np.ones(1), np.zeros((1, 0)))
 
 
 def _given(torques: Sequence[float] | FloatArray, largest: float | None) -> FloatArray:

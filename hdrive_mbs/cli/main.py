@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from hdrive_mbs import __version__
-from hdrive_mbs.cli import demo, effects, modes, run, torsion
+from hdrive_mbs.cli import demo, effects, modes, run, teeth, torsion
 from hdrive_mbs.errors import HdriveError
 
 app = typer.Typer(
@@ -33,7 +33,7 @@ def _options(
     """Harmonic-drive power trains and rotors on the multibody engine Exudyn."""
 
 
-for command in (run.run, modes.modes, torsion.torsion, effects.effects, demo.demo):
+for command in (run.run, modes.modes, torsion.torsion, effects.effects, teeth.teeth, demo.demo):
     app.command()(command)
 
 

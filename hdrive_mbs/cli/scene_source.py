@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import importlib.util
 import inspect
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from hdrive_mbs.effects.effect import Effect
@@ -35,7 +36,8 @@ def open_scene(path: Path, settings: Sequence[str] = (), effects: Sequence[str] 
     return scene
 
 
-def _build(path: Path, settings: Sequence[str]) -> tuple[Scene, list[str]]:
+def module_of(path: Path) -> ModuleType:
+    """The module in a .py file, run once."""
     if not path.is_file():
         raise FileFormatError(f"{path}: no such file. Give a .py file with build() -> Scene, or a .toml or .json scene.")
     spec = importlib.util.spec_from_file_location(path.stem, path)
@@ -43,10 +45,12 @@ def _build(path: Path, settings: Sequence[str]) -> tuple[Scene, list[str]]:
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    build = getattr(module, "build", None)
-    if build is None:
-        raise SceneError(f"{path} has no function build() that returns a Scene.")
-    wanted = inspect.signature(build).parameters
+    return module
+
+
+def call(function: Callable[..., Any], settings: Sequence[str]) -> tuple[Any, list[str]]:
+    """The function with those NAME=VALUE settings that are arguments of it, and the other settings."""
+    wanted = inspect.signature(function).parameters
     arguments: dict[str, Any] = {}
     rest = []
     for text in settings:
@@ -55,7 +59,14 @@ def _build(path: Path, settings: Sequence[str]) -> tuple[Scene, list[str]]:
             arguments[name.strip()] = _plain(value.strip())
         else:
             rest.append(text)
-    scene = build(**arguments)
+    return function(**arguments), rest
+
+
+def _build(path: Path, settings: Sequence[str]) -> tuple[Scene, list[str]]:
+    build = getattr(module_of(path), "build", None)
+    if build is None:
+        raise SceneError(f"{path} has no function build() that returns a Scene.")
+    scene, rest = call(build, settings)
     if not isinstance(scene, Scene):
         raise SceneError(f"{path}: build() returned a {type(scene).__name__}, not a Scene.")
     return scene, rest
@@ -70,10 +81,7 @@ def _plain(value: str) -> Any:
 
 def effect_types() -> dict[str, type[Effect]]:
     """All effect classes that can be put into a scene, by name."""
-    shapes = {"Effect", "TorqueEffect", "TwistEffect", "LawEffect"}
-    return {
-        name: kind for name, kind in sorted(all_types().items()) if issubclass(kind, Effect) and name not in shapes and not name.startswith("_")
-    }
+    return {name: kind for name, kind in sorted(all_types().items()) if issubclass(kind, Effect) and not inspect.isabstract(kind)}
 
 
 def parse_effect(text: str) -> tuple[Effect, str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, Self
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from hdrive_mbs.flexsplines.law import StiffnessFunction, StiffnessLaw
 from hdrive_mbs.network.draft import Draft, Torque
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.quantities import option, parameter
+from hdrive_mbs.teeth.gear import WaveGear
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,6 +41,7 @@ class HarmonicDrive(Component):
     flexspline_inertia: float = parameter("kg m^2", "J_FS", default=0.0, low=0.0)
     circular_spline_inertia: float = parameter("kg m^2", "inertia of a circular spline that can turn", default=0.0, low=0.0)
     output_sense: str = option("'opposite' (flexspline against wave generator) or 'same'", default="opposite")
+    teeth: WaveGear | None = option("gear geometry that ratio and sense belong to; refused if its teeth interfere", default=None)
 
     entry = "wave_generator"
     exit = "flexspline"
@@ -49,6 +52,27 @@ class HarmonicDrive(Component):
         self.law.check_restoring()
         if self.output_sense not in ("opposite", "same"):
             raise ParameterError(f"HarmonicDrive.output_sense = {self.output_sense!r}: must be 'opposite' or 'same'.")
+        if self.teeth is not None:
+            self._check_teeth(self.teeth)
+
+    def _check_teeth(self, gear: WaveGear) -> None:
+        if abs(gear.ratio - self.signed_ratio) > 1e-9 * self.ratio:
+            raise ParameterError(
+                f"HarmonicDrive.ratio = {self.ratio:g} ({self.output_sense}) does not belong to the teeth, which give {gear.ratio:g}. "
+                "Build the drive with HarmonicDrive.from_gear, which takes ratio and sense from the teeth."
+            )
+        gear.check_interference()
+
+    @classmethod
+    def from_gear(cls, gear: WaveGear, **fields: Any) -> Self:
+        """A drive with the ratio and sense of a gear's teeth; ``fields`` are the others (stiffness, damping, inertias).
+
+        The flange ``flexspline`` is the gear's output: the flexspline, or wheel 4 of a double harmonic
+        gear.  ``gear.lost_motion`` and ``gear.mesh_stiffness_factor`` go into the stiffness law,
+        ``tooth_errors(gear, ...)`` gives effects.  Raises ParameterError for a gear that interferes.
+        """
+        sense = "opposite" if gear.ratio < 0.0 else "same"
+        return cls(ratio=abs(gear.ratio), output_sense=sense, teeth=gear, **fields)
 
     @property
     def law(self) -> StiffnessLaw:
@@ -82,11 +106,11 @@ class HarmonicDrive(Component):
         connection = draft.add_connection(
             name, factors, self._torque(), aliases=(f"{name}.mesh",), bodies={flange: node.name for flange, node in ends.items()}
         )
-        # true-sense torque that the mesh puts on the circular spline and so on its housing
-        share = -float(forward * relation["circular_spline"])
+        ring = ends["circular_spline"]
 
         def housing(moment: Moment) -> Value:
-            return share * connection.build().value(moment)
+            """True-sense torque that the mesh puts on the circular spline and so on its housing."""
+            return ring.sense * connection.build().contribution(moment)[ring.name]
 
         draft.add_channel(f"{name}.housing_torque", "N m", f"torque on the circular spline of {name}, true sense", housing)
 

@@ -52,10 +52,11 @@ class Shaft(Component):
     def build(self, name: str, draft: Draft) -> None:
         a, b = draft.body(f"{name}.a"), draft.body(f"{name}.b")
         sense = b.sense if b.name != "ground" else a.sense
-        factors = [(a.name, sense * a.sense * 1.0), (b.name, -sense * b.sense * 1.0)]
+        factors = {a.name: float(sense * a.sense)}
+        factors[b.name] = factors.get(b.name, 0.0) - float(sense * b.sense)
         stiffness, damping = self.stiffness, self.damping
 
         def torque(moment: Moment, twist: Value, rate: Value) -> Value:
             return stiffness * twist + damping * rate
 
-        draft.add_connection(name, dict(factors), torque, bodies={"a": a.name, "b": b.name})
+        draft.add_connection(name, factors, torque, bodies={"a": a.name, "b": b.name})

@@ -26,10 +26,10 @@ class KinematicError(Effect):
     sense (in true sense: e times the sense of the output).  The torque of the gear acts back on the
     followed flange by T de/da, so no energy is made.  At e(0) != 0 a run from rest starts wound up by e(0).
 
-    Source: Ghorbel, Gandhi, Alpeter, ASME J. Mechanical Design 123 (2001) 90; Nye, Kraml, NASA CP-3113
-    (1991) 237: harmonic drives err mostly at 2 periods per turn of the wave generator and its
-    multiples, and at 1 and 2 per turn of the output.  Leaves out that the error changes with load
-    and assembly; other orders are further effects.
+    Source: Ghorbel, Gandhi, Alpeter, ASME J. Mechanical Design 123 (2001) 90; Nye, Kraml, 25th Aerospace
+    Mechanisms Symposium, NASA CP-3113 (1991).  Harmonic drives err mostly twice per turn of the wave
+    generator and at multiples of it, and once and twice per turn of the output.  Leaves out that
+    the error changes with load and assembly; other orders are further effects.
     """
 
     amplitude: float = parameter("rad", "amplitude A at the output, 0-peak", low=0.0, high=0.01)

@@ -22,7 +22,8 @@ class MaxwellSlipHysteresis(MemoryTwistEffect):
 
     with the rate of twist v, stiffness k_i and limit L_i of each element.  r = 0 is the sharp law: an
     element follows the twist until |T_i| = L_i and then slips; loops then obey Masing's rules
-    exactly.  r > 0 rounds the corner (by less than r L_i), which adaptive solvers step over faster.
+    exactly.  r > 0 rounds the corner (by less than r L_i), which costs adaptive solvers fewer
+    rejected steps; multistep solvers can get stuck on the sharp corner.
 
     Source: Iwan, J. Applied Mechanics 33 (1966) 893; Al-Bender, Lampaert, Swevers, IEEE Trans.
     Automatic Control 50 (2005) 1883.  Leaves out the dependence on speed and load.  Up to four

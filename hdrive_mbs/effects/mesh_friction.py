@@ -20,12 +20,13 @@ class MeshFriction(Effect):
 
     tau = -(T_0 + mu |T|/u) tanh(v / w_0),  v = w_wg - w_cs
 
-    on the wave generator, with the reaction on the circular spline (its housing); T is the torque
-    through the mesh and T/u its ideal reaction on the wave generator, with u from the gear itself.
-    Teeth and wave-generator balls slide and roll as the wave runs round the circular spline, so v is
-    the speed of the wave, not of the slow output.  The heat is (T_0 + mu |T|/u) |v|: with T_0 = 0
-    and a held circular spline the efficiency is 1/(1 + mu) when driving and 1 - mu when driven
-    back (mu >= 1 locks).  mu is a loss factor of the whole gear, not a coefficient of tooth friction.
+    on the wave generator, with the reaction on the circular spline (channel ``housing_torque``);
+    T is the torque through the mesh and T/u its ideal reaction on the wave generator, with u from
+    the gear itself.  Teeth and wave-generator balls slide and roll as the wave runs round the
+    circular spline, so v is the speed of the wave, not of the slow output.  The heat is
+    (T_0 + mu |T|/u) |v|: with T_0 = 0 and a held circular spline the efficiency is 1/(1 + mu) when
+    driving and 1 - mu when driven back (mu >= 1 locks).  mu is a loss factor of the whole gear, not
+    a coefficient of tooth friction.
 
     Source: load-dependent gear friction as in Tuttle, Seering, IEEE Trans. Robotics and Automation
     12 (1996) 368 and Taghirad, Belanger, ASME J. Dyn. Syst. Meas. Control 120 (1998) 439, sign(v)
@@ -53,8 +54,12 @@ class MeshFriction(Effect):
                 size = size + self.loss_factor * share * np.abs(gear.build().value(moment))
             return size * np.tanh(speed / self.smoothing_speed)
 
-        def channel(moment: Moment) -> Value:
+        def on_wave(moment: Moment) -> Value:
             return -friction(moment, 0.0, sum(factor * moment.speed(body) for body, factor in relative.items()))
 
+        def on_ring(moment: Moment) -> Value:
+            return -wave.sense * on_wave(moment)
+
         draft.add_relative_torque(name, relative, friction, dissipative=self.dissipative)
-        draft.add_channel(f"{name}.torque", "N m", f"torque of {name} on the wave generator, positive when driving", channel)
+        draft.add_channel(f"{name}.torque", "N m", f"torque of {name} on the wave generator, positive when driving", on_wave)
+        draft.add_channel(f"{name}.housing_torque", "N m", f"torque of {name} on the circular spline, true sense", on_ring)

@@ -53,6 +53,8 @@ class Assembly:
     sensors: dict[str, tuple[Any, Any]]
     lowered: list[Lowered] = field(default_factory=list)
     kept: list[Any] = field(default_factory=list)
+    failures: list[str] = field(default_factory=list)
+    """What Python laws raised in the last run."""
 
     def set_initial(self, angles: Mapping[str, float], speeds: Mapping[str, float], states: Mapping[str, float]) -> None:
         """Initial forward angles and speeds of the bodies and values of the states."""
@@ -90,6 +92,7 @@ class _Builder:
         self.mbs = self.container.AddSystem()
         self.lowered: list[Lowered] = []
         self.kept: list[Any] = []
+        self.failures: list[str] = []
         self.nodes: dict[str, Any] = {}
         self.markers: dict[str, Any] = {}
         for body in network.bodies:
@@ -129,7 +132,15 @@ class _Builder:
         if record.expression is None:
             self._warn(record.name, record.reason)
             plain = record.plain
-            return (lambda mbs, t, i, x, v, *_: float(plain(t, x, v))), "python"
+
+            def law(mbs: Any, t: float, i: int, x: float, v: float, *_: float) -> float:
+                try:
+                    return float(plain(t, x, v))
+                except Exception as error:
+                    self._note(record.name, t, error)
+                    raise
+
+            return law, "python"
         if self.python:
             compiled = scalar_function([record.expression], ["t", "x", "v"])
             return (lambda mbs, t, i, x, v, *_: compiled(t, x, v)[0]), "python"
@@ -145,7 +156,7 @@ class _Builder:
         if not record.targets or (record.outputs is not None and not outputs):
             self.lowered.append(Lowered(record.name, "native"))  # zero, or on prescribed motions only
             return
-        if record.outputs is None:
+        if record.outputs is None and record.targets:
             self._warn(record.name, record.reason)
             self._add_plain(record)
             return
@@ -204,8 +215,12 @@ class _Builder:
                 speeds=speeds,
                 states={name: speeds[name] for name in names if name in states},
             )
-            result = plain(moment)
-            return [float(result.get(name, 0.0)) for name in names]
+            try:
+                result = plain(moment)
+                return [float(result.get(name, 0.0)) for name in names]
+            except Exception as error:
+                self._note(record.name, t, error)
+                raise
 
         self._add_object(names, function)
         self.lowered.append(Lowered(record.name, "python", record.reason))
@@ -224,6 +239,10 @@ class _Builder:
                 forceUserFunction=function,
             )
         )
+
+    def _note(self, name: str, t: float, error: Exception) -> None:
+        if not self.failures:
+            self.failures.append(f"{name} fails at t = {t:.6g} s ({type(error).__name__}: {error})")
 
     # -- the end -------------------------------------------------------------------------------------
     def _warn(self, name: str, reason: str) -> None:
@@ -252,6 +271,7 @@ class _Builder:
             sensors=sensors,
             lowered=self.lowered,
             kept=self.kept,
+            failures=self.failures,
         )
 
 

@@ -7,13 +7,14 @@ meaning differs, a law that is not a pure function.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
 from hdrive_mbs.engine.records import CoupledRecord, ScalarRecord
-from hdrive_mbs.errors import LawError
+from hdrive_mbs.errors import HdriveError, LawError
 from hdrive_mbs.expression import Expression
 from hdrive_mbs.network.moment import Moment
 
@@ -39,8 +40,22 @@ def _differ(lowered: float, plain: float) -> bool:
 def _refuse(name: str, where: str, lowered: float, plain: float) -> LawError:
     return LawError(
         f"{name}: its lowered form gives {lowered:.9g} and the law itself {plain:.9g} at {where}. "
-        "A law must be a pure function of its arguments (no counters, no random numbers, no 'if' on them)."
+        "A law must be a pure function of its arguments: no counters, no random numbers, no look at their type, "
+        "and no sums of comparisons (numpy adds True and True to True; write & and |)."
     )
+
+
+@contextmanager
+def _computing(name: str) -> Iterator[None]:
+    try:
+        yield
+    except HdriveError:
+        raise
+    except Exception as error:
+        raise LawError(
+            f"{name}: the law can be recorded, but fails on numpy numbers ({type(error).__name__}: {error}). "
+            "Comparisons are combined with &, | and ~, or turned into numbers by np.where."
+        ) from error
 
 
 def check_connector(mbs: Any, function: Any, kind: str, record: ScalarRecord) -> None:
@@ -50,7 +65,8 @@ def check_connector(mbs: Any, function: Any, kind: str, record: ScalarRecord) ->
     extra = [0.0] * _EXTRA[kind]
     with np.errstate(all="ignore"):
         for t, xi, vi in zip(times, x, v, strict=True):
-            plain = float(record.plain(np.float64(t), np.float64(xi), np.float64(vi)))
+            with _computing(record.name):
+                plain = float(record.plain(np.float64(t), np.float64(xi), np.float64(vi)))
             lowered = float(function.Evaluate(mbs, float(t), 0, float(xi), float(vi), *extra))
             if _differ(lowered, plain):
                 raise _refuse(record.name, f"t={t:.6g}, displacement={xi:.6g}, velocity={vi:.6g}", lowered, plain)
@@ -73,9 +89,10 @@ def check_coupling(
                 speeds=speeds,
                 states={name: speeds[name] for name in names if name in states},
             )
-            plain = record.plain(moment)
+            with _computing(record.name):
+                plain = {name: float(value) for name, value in record.plain(moment).items()}
             lowered = function.Evaluate(mbs, float(t), 0, [float(q[n][k]) for n in names], [float(q_t[n][k]) for n in names])
             for row, name in enumerate(names):
-                expected = float(plain[name]) if name in outputs else 0.0
+                expected = plain[name] if name in outputs else 0.0
                 if _differ(float(lowered[row]), expected):
                     raise _refuse(f"{record.name} on {name}", f"t={t:.6g}", float(lowered[row]), expected)

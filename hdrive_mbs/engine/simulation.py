@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import signal
 import threading
 import time
@@ -21,6 +22,9 @@ from hdrive_mbs.errors import SimulationError
 FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[float], None]
 """Called now and then with the simulated time reached [s]."""
+
+STUCK = 1e-9
+"""A run that gets on by less than this share of its duration within 4096 steps is given up."""
 
 
 @dataclass(frozen=True)
@@ -93,32 +97,62 @@ def run(
     settings.timeIntegration.explicit.computeEndOfStepAccelerations = False
     solver_type = solver.configure(settings, duration)
     error = ""
+    assembly.failures.clear()
     with _interrupt_flag() as interrupted, _quiet():
-        _watch(mbs, interrupted, cancel, progress)
+        stuck = _watch(mbs, duration, interrupted, cancel, progress)
         started = time.process_time()
         try:
             mbs.SolveDynamic(settings, solverType=solver_type, showHints=False, showCausingItems=False)
         except Exception as failure:  # exudyn raises its own and pybind errors; all end the run the same way
-            error = str(failure).strip().splitlines()[-1] if str(failure).strip() else type(failure).__name__
+            error = str(failure).strip().partition("\n")[0] or type(failure).__name__
         seconds = time.process_time() - started
+    if stuck.is_set():
+        error = "the step shrinks to nothing, so there the solution grows without bound or a law gives no finite number"
+    elif assembly.failures:
+        error = assembly.failures[0]
     cancelled = interrupted.is_set() or (cancel is not None and cancel.is_set())
     return _collect(assembly, solver, duration, error, cancelled, seconds)
 
 
-def _watch(mbs: Any, interrupted: threading.Event, cancel: threading.Event | None, progress: Progress | None) -> None:
-    """Look at the cancel flags before each step, and report at most ten times a second."""
-    next_report = [time.monotonic() + 0.1]
-    clock = time.monotonic
+class _StopError(Exception):
+    """Ends a run from inside the solver."""
+
+
+def _watch(
+    mbs: Any, duration: float, interrupted: threading.Event, cancel: threading.Event | None, progress: Progress | None
+) -> threading.Event:
+    """Look at the cancel flags every 32 steps and report at most ten times a second.
+
+    Returns an event that is set when the run got stuck: where values stop being finite DOPRI5
+    repeats its step for ever, and then only an exception stops it (the False of a cancel does not).
+    """
+    clock, stuck = time.monotonic, threading.Event()
+    # t is the end of the step that is tried; a rejected step may reach far ahead, so the lowest of a block counts
+    calls, stopping, next_report, last, lowest = -1, 0, clock() + 0.1, -1.0, math.inf
 
     def before_step(_mbs: Any, t: float) -> bool:
+        nonlocal calls, stopping, next_report, last, lowest
+        calls += 1
+        if calls & 31:
+            return True
         if interrupted.is_set() or (cancel is not None and cancel.is_set()):
+            calls, stopping = -1, stopping + 1
+            if stopping > 2:
+                raise _StopError
             return False
-        if progress is not None and clock() > next_report[0]:
+        lowest = min(lowest, t)
+        if calls & 4095 == 4064:
+            if lowest - last < STUCK * duration:
+                stuck.set()
+                raise _StopError
+            last, lowest = lowest, math.inf
+        if progress is not None and clock() > next_report:
             progress(t)
-            next_report[0] = clock() + 0.1
+            next_report = clock() + 0.1
         return True
 
     mbs.SetPreStepUserFunction(before_step)
+    return stuck
 
 
 def _collect(assembly: Assembly, solver: Solver, duration: float, error: str, cancelled: bool, seconds: float) -> RawRun:
@@ -146,8 +180,9 @@ def _collect(assembly: Assembly, solver: Solver, duration: float, error: str, ca
         )
     complete = reached >= duration * (1.0 - 1e-9)
     if not complete and not cancelled:
-        why = f" ({error})" if error else ""
-        raise SimulationError(f"The run stopped at t = {reached:.6g} s of {duration:g} s with {solver.describe()}{why}. {advice}")
+        why = f": {error}" if error else ""
+        way_out = "Correct the law." if assembly.failures else advice
+        raise SimulationError(f"The run stopped at t = {reached:.6g} s of {duration:g} s with {solver.describe()}{why}. {way_out}")
     iteration = mbs.sys["dynamicSolver"].it
     return RawRun(
         times=times,

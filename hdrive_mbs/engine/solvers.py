@@ -39,6 +39,7 @@ class DormandPrince(Solver):
     relative_tolerance: float = parameter("1", "relative tolerance of a step", default=1e-6, above=0.0)
     absolute_tolerance: float = parameter("1", "absolute tolerance of a step (rad, rad/s)", default=1e-8, above=0.0)
     max_step: float = parameter("s", "longest step", default=1e-2, above=0.0)
+    first_step: float = parameter("s", "first step that is tried", default=1e-6, above=0.0)
 
     order = 5
     adaptive = True
@@ -50,6 +51,8 @@ class DormandPrince(Solver):
         integration.absoluteTolerance = self.absolute_tolerance
         integration.numberOfSteps = max(1, math.ceil(duration / self.max_step))
         integration.minimumStepSize = 1e-14
+        # exudyn would try max_step first; where that overflows its error is NaN, and NaN passes as accepted
+        integration.initialStepSize = min(self.first_step, self.max_step)
         return exu.DynamicSolverType.DOPRI5
 
     def refined(self) -> DormandPrince:

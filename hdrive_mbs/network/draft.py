@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from hdrive_mbs.errors import PlaceError, SceneError, unknown_place
-from hdrive_mbs.expression import Value, gradient
+from hdrive_mbs.errors import LawError, PlaceError, SceneError, unknown_place
+from hdrive_mbs.expression import TraceError, Value, gradient
 from hdrive_mbs.network.elements import AppliedTorque, Claim, Connection, Element, KinematicTerm, StateRate
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Body, Channel, Motion, Network, State
@@ -190,7 +190,14 @@ class Draft:
         return unique
 
     def prescribe(self, coordinate: str, angle: Callable[[Value], Value]) -> None:
-        """Make the forward angle of a coordinate a function of time."""
+        """Make the forward angle of a coordinate a function of time.
+
+        Raises LawError where the angle cannot be differentiated.
+        """
+        try:
+            gradient(gradient(angle))
+        except TraceError as error:
+            raise LawError(f"The motion of {coordinate!r} must be written with numpy functions, to be differentiated: {error}.") from None
         self._motions[coordinate] = angle
 
     def add_channel(self, name: str, unit: str, doc: str, read: Callable[[Moment], Value], *, slope: str | None = None) -> None:
@@ -248,6 +255,12 @@ class Draft:
         if not bodies:
             raise SceneError("The scene has no body that can move: every place is held or prescribed.")
         connections = [draft.build() for draft in self._connections.values()]
+        for connection in connections:
+            if not connection.terms and all(factor == 0.0 for factor in connection.factors.values()):
+                raise SceneError(
+                    f"Both ends of {connection.name!r} are joined to {next(iter(connection.factors))!r}, so it can never twist. "
+                    "Connect one end to another body, or remove it."
+                )
         prescribed = {motion.name: motion for motion in motions}
         channels = list(self._body_channels(prescribed)) + list(self._connection_channels(connections))
         channels += self._channels.values()

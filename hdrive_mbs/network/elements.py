@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 from hdrive_mbs.expression import Value, gradient
@@ -51,11 +52,15 @@ class KinematicTerm:
 
     def slope(self, moment: Moment) -> Value:
         """de/da by differentiation of the recorded law."""
-        return gradient(self.error)(self._angle(moment))
+        return self._derivative(self._angle(moment))
 
     def rate(self, moment: Moment) -> Value:
         """de/dt [rad/s]."""
         return self.slope(moment) * sum(factor * moment.speed(name) for name, factor in self.factors.items())
+
+    @cached_property
+    def _derivative(self) -> Callable[[Value], Value]:
+        return gradient(self.error)
 
     def _angle(self, moment: Moment) -> Value:
         return sum(factor * moment.angle(name) for name, factor in self.factors.items())

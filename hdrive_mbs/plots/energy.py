@@ -57,17 +57,17 @@ def _flows(ax: Axes, result: EnergyBalance) -> None:
     columns.append(("heat in connections", heat))
     _draw(ax, result.times, columns)
     ax.set_ylabel("energy [J]")
-    legend_above(ax)
+    legend_above(ax, columns=2)
 
 
 def _kept(ax: Axes, result: EnergyBalance) -> None:
     columns = [(f"stored in {readable(name)}", values) for name, values in result.stored.items()]
     columns += [(f"heat in {readable(name)}", values) for name, values in result.dissipated.items()]
     size = max((float(np.max(np.abs(values))) for _, values in columns), default=0.0)
-    seen = [(name, values) for name, values in columns if np.max(np.abs(values)) > 1e-3 * size]
+    seen = [(name, values) for name, values in columns if np.max(np.abs(values)) > 0.01 * size]
     _draw(ax, result.times, seen[:6])
     ax.set_ylabel("energy [J]")
-    legend_above(ax, columns=4)
+    legend_above(ax, columns=2)
 
 
 def _residuals(ax: Axes, result: EnergyBalance) -> None:
@@ -82,4 +82,4 @@ def _residuals(ax: Axes, result: EnergyBalance) -> None:
     ax.margins(x=0.0)
     ax.set_ylim(bottom=1e-17)
     ax.set_ylabel("imbalance / largest [1]")
-    legend_above(ax)
+    legend_above(ax, columns=2)

@@ -29,7 +29,7 @@ HOUSE: Any = {
     "axes.titlesize": 10,
     "axes.titlelocation": "left",
     "axes.labelsize": 10,
-    "axes.formatter.limits": (-3, 4),
+    "axes.formatter.limits": (-3, 5),
     "axes.formatter.use_mathtext": True,
     "font.size": 9.5,
     "figure.titlesize": 11,
@@ -78,6 +78,11 @@ def legend_above(ax: Axes, columns: int = 3) -> None:
 def readable(channel: str) -> str:
     """``gear.wave_generator.speed`` -> ``gear wave generator speed``."""
     return channel.replace(".", " ").replace("_", " ")
+
+
+def number(value: float) -> str:
+    """Four significant digits, without an exponent where that is readable."""
+    return f"{float(f'{value:.4g}'):.10g}" if 1e-3 <= abs(value) < 1e6 else f"{value:.4g}"
 
 
 def unit_text(unit: str) -> str:

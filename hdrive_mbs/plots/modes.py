@@ -10,7 +10,7 @@ from hdrive_mbs.analysis.modes import Modes
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.network.elements import Connection
 from hdrive_mbs.plots.dispatch import plot
-from hdrive_mbs.plots.look import GREY, house_look, legend_above, new_figure, style
+from hdrive_mbs.plots.look import GREY, house_look, legend_above, new_figure, number, style
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -27,29 +27,32 @@ def plot_modes(result: Modes, ax: Axes | None = None, *, one_axis: bool = True, 
     count = min(len(result.undamped), most)
     if count == 0:
         raise AnalysisError("There is no elastic mode at this operating point, so no shape to draw.")
-    shapes = shown_shapes(result, one_axis)
+    shapes, place = shown_shapes(result, one_axis), places_along_line(result)
     what = "angle on the motor's axis" if one_axis else "angle, true sense"
     with house_look():
         if ax is not None:
             for k in range(count):
-                _shape(ax, result, shapes[:, k], k, f"mode {k + 1}: {result.undamped[k]:.4g} rad/s")
-            _bodies(ax, result)
+                _shape(ax, result, place, shapes[:, k], k, f"mode {k + 1}: {number(result.undamped[k])} rad/s")
+            _bodies(ax, result, place)
             ax.set_ylabel(f"{what}, 0-peak, largest 1 [1]")
             legend_above(ax, columns=2)
             return ax
-        columns = min(count, 3)
+        columns = 2 if count == 4 else min(count, 3)
         rows = -(-count // columns)
         figure = new_figure(2.6 * columns + 0.6, 2.7 * rows + 1.0)
         axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
         for k in range(count):
-            _shape(axes[k], result, shapes[:, k], 0, None)
+            _shape(axes[k], result, place, shapes[:, k], 0, None)
             hertz = result.undamped[k] / (2.0 * np.pi)
-            axes[k].set_title(f"mode {k + 1}: {result.undamped[k]:.4g}\u2009rad/s\n{hertz:.4g}\u2009Hz{_damping(result, k)}", fontsize=9.5)
-            _bodies(axes[k], result)
+            axes[k].set_title(
+                f"mode {k + 1}: {number(result.undamped[k])}\u2009rad/s\n{number(hertz)}\u2009Hz{_damping(result, k)}", fontsize=9.5
+            )
+            _bodies(axes[k], result, place)
             axes[k].tick_params(labelbottom=k + columns >= count)
         for spare in axes[count:]:
             spare.remove()
-        figure.supylabel(f"{what}, 0-peak, largest 1 [1]", fontsize=10)
+        for k in range(0, count, columns):
+            axes[k].set_ylabel(f"{what},\n0-peak, largest 1 [1]")
         axes[0].set_ylim(-1.12, 1.12)
         name = result.scene.name if result.scene is not None else "undamped modes"
         left = len(result.undamped) - count
@@ -94,17 +97,36 @@ def _links(result: Modes) -> list[tuple[int, int]]:
     return pairs
 
 
-def _shape(ax: Axes, result: Modes, shape: FloatArray, number: int, label: str | None) -> None:
-    look = style(number)
+def places_along_line(result: Modes) -> list[int]:
+    """Position of each body when the line is walked from one end (the motor's, if it is an end)."""
+    near: dict[int, list[int]] = {k: [] for k in range(len(result.bodies))}
     for i, j in _links(result):
-        ax.plot([i, j], [shape[i], shape[j]], **look)
-    ax.plot(np.arange(len(shape)), shape, color=look["color"], linestyle="none", marker="o", markersize=4.5)
+        near[i].append(j)
+        near[j].append(i)
+    ratios = {} if result.scene is None else {body.name: body.ratio for body in result.scene.network().bodies}
+    ends = sorted(near, key=lambda k: (len(near[k]), abs(ratios.get(result.bodies[k], 1.0) - 1.0) > 1e-9, result.bodies[k]))
+    walked: list[int] = []
+    for start in ends:
+        stack = [start]
+        while stack:
+            k = stack.pop()
+            if k not in walked:
+                walked.append(k)
+                stack += near[k]
+    return [walked.index(k) for k in range(len(result.bodies))]
+
+
+def _shape(ax: Axes, result: Modes, place: list[int], shape: FloatArray, index: int, label: str | None) -> None:
+    look = style(index)
+    for i, j in _links(result):
+        ax.plot([place[i], place[j]], [shape[i], shape[j]], **look)
+    ax.plot(place, shape, color=look["color"], linestyle="none", marker="o", markersize=4.5)
     if label is not None:
         ax.plot([], [], marker="o", markersize=4.5, label=label, **look)
 
 
-def _bodies(ax: Axes, result: Modes) -> None:
-    ax.axhline(0.0, color=GREY, linewidth=0.8, linestyle="-")
+def _bodies(ax: Axes, result: Modes, place: list[int]) -> None:
+    ax.axhline(0.0, color=GREY, linewidth=0.8, linestyle="-", zorder=0.5)
     names = [name.rpartition(".")[2].replace("_", " ") or name for name in result.bodies]
-    ax.set_xticks(range(len(names)), names, rotation=40, ha="right", rotation_mode="anchor")
+    ax.set_xticks(place, names, rotation=40, ha="right", rotation_mode="anchor")
     ax.set_xlim(-0.4, len(names) - 0.6)

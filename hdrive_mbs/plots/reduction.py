@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from hdrive_mbs.analysis.reduction import Reduction
 from hdrive_mbs.plots.dispatch import plot
-from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, readable, style
+from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, number, readable, style
 
 
 @plot.register
@@ -21,7 +21,7 @@ def plot_reduction(result: Reduction, ax: Axes | None = None) -> Axes:
         ax.loglog(result.frequency, np.abs(result.reduced_transfer), label="rigid shafts", **style(1))
         tolerance = 100.0 * float(result.settings.get("transfer_tolerance", np.nan))
         if result.good_to > 0.0:
-            label = f"agree within {tolerance:g} % up to {result.good_to:.4g} rad/s"
+            label = f"agree within {tolerance:g} % up to {number(result.good_to)} rad/s"
             ax.axvline(result.good_to, color=GREY, linestyle=":", linewidth=1.2, label=label)
         ax.set_xlim(float(result.frequency[0]), float(result.frequency[-1]))
         ax.set_xlabel("frequency [rad/s]")

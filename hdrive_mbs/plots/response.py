@@ -23,6 +23,9 @@ MOST_LINES = 4
 
 MOST_PANELS = 5
 
+QUANTITIES = {"rad": "angle", "rad/s": "speed", "rad/s^2": "acceleration", "N m": "torque"}
+"""What a panel with different quantities of one unit is called."""
+
 
 @plot.register
 def plot_response(
@@ -133,7 +136,8 @@ def _panel(ax: Axes, result: Response, channels: list[str], span: np.ndarray) ->
         x, y = thinned(result.times[span], result.values[name][span])
         ax.plot(x, y, label=readable(name), **style(k))
     quantities = {name.rpartition(".")[2] for name in channels}
-    quantity = readable(quantities.pop()) if len(quantities) == 1 else "value"
-    ax.set_ylabel(f"{quantity} [{unit_text(result.units[channels[0]])}]")
+    unit = result.units[channels[0]]
+    quantity = readable(quantities.pop()) if len(quantities) == 1 else QUANTITIES.get(unit, "value")
+    ax.set_ylabel(f"{quantity} [{unit_text(unit)}]")
     ax.margins(x=0.0)
     legend_above(ax)

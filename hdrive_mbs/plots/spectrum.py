@@ -30,9 +30,11 @@ def plot_spectrum(
     found = [(peak.frequency, peak.amplitude) for peak in result.peaks(peaks)]
     with house_look():
         ax = given_or_new(ax, 7.2, 3.6)
-        _lines(ax, result.frequency, result.amplitude, found, highest, logarithmic, "Hz")
+        _draw(ax, result.frequency, result.amplitude, found, highest, logarithmic, "Hz")
         ax.set_xlabel("frequency [Hz]")
-        _labels(ax, result, f"{result.window} window, {result.start:.4g} to {result.end:.4g} s, {result.resolution:.3g} Hz per line")
+        _labels(
+            ax, result, f"{_window(result.window)} window, {result.start:.4g} to {result.end:.4g} s, {result.resolution:.3g} Hz per line"
+        )
     return ax
 
 
@@ -44,11 +46,15 @@ def plot_order_spectrum(
     found = [(peak.order, peak.amplitude) for peak in result.peaks(peaks)]
     with house_look():
         ax = given_or_new(ax, 7.2, 3.6)
-        _lines(ax, result.order, result.amplitude, found, highest, logarithmic, "")
+        _draw(ax, result.order, result.amplitude, found, highest, logarithmic, "")
         ax.set_xlabel(f"order: periods per revolution of {readable(result.against)} [1]")
         speeds = f"{result.slowest:.4g} to {result.fastest:.4g} rad/s"
-        _labels(ax, result, f"{result.window} window, {result.revolutions:.4g} revolutions at {speeds}")
+        _labels(ax, result, f"{_window(result.window)} window, {result.revolutions:.4g} revolutions at {speeds}")
     return ax
+
+
+def _window(name: str) -> str:
+    return "Hann" if name == "hann" else readable(name)
 
 
 def _labels(ax: Axes, result: Spectrum | OrderSpectrum, how: str) -> None:
@@ -57,7 +63,7 @@ def _labels(ax: Axes, result: Spectrum | OrderSpectrum, how: str) -> None:
     ax.set_title(f"{readable(result.channel)}: mean {result.mean:.4g}\u2009{unit}\n{how}", fontsize=9.5)
 
 
-def _lines(
+def _draw(
     ax: Axes,
     x: FloatArray,
     amplitude: FloatArray,
@@ -69,7 +75,7 @@ def _lines(
     shown = amplitude[1:]
     largest = float(shown.max(initial=0.0))
     if highest is None:
-        strong = np.nonzero(shown > 0.005 * largest)[0]
+        strong = np.nonzero(shown > (1e-4 if logarithmic else 0.005) * largest)[0]
         last = int(strong[-1]) + 1 if len(strong) else len(x) - 1
         highest = float(x[min(len(x) - 1, max(int(1.15 * last) + 2, 10))])
     part = slice(1, int(np.searchsorted(x, highest, side="right")))
@@ -79,21 +85,33 @@ def _lines(
     ax.set_xlim(0.0, highest)
     if logarithmic:
         ax.set_yscale("log")
-        ax.set_ylim(bottom=max(largest * 1e-5, 1e-300), top=4.0 * largest if largest > 0.0 else 1.0)
+        ax.set_ylim(bottom=max(largest * 1e-5, 1e-300), top=15.0 * largest if largest > 0.0 else 1.0)
     elif largest > 0.0:
         ax.set_ylim(0.0, 1.22 * max(largest, *(height for _, height in peaks), 0.0))
-    named: list[float] = []
+    _name(ax, [peak for peak in peaks if peak[0] <= highest], highest, unit)
+
+
+LABEL = 0.1
+"""Width of the name of a peak, as a share of the axis."""
+
+
+def _name(ax: Axes, peaks: Sequence[tuple[float, float]], highest: float, unit: str) -> None:
+    """Frequency and amplitude beside each peak, largest first; a name that would cover another is left out."""
+    taken: list[tuple[float, float]] = []
     for position, height in peaks:
-        if position <= highest and all(abs(position - other) > 0.11 * highest for other in named):
-            named.append(position)
-            side = "right" if position > 0.88 * highest else "left" if position < 0.08 * highest else "center"
-            ax.plot([position], [height], "o", color=COLOURS[1], markersize=3.5)
-            ax.annotate(
-                f"{position:.4g}{chr(0x2009) + unit if unit else ''}\n{height:.3g}",
-                (position, height),
-                xytext=(0, 4),
-                textcoords="offset points",
-                ha=side,
-                va="bottom",
-                fontsize=8.5,
-            )
+        ax.plot([position], [height], "o", color=COLOURS[1], markersize=3.5)
+        for side, shift in (("center", -0.5), ("left", 0.0), ("right", -1.0)):
+            first = position / highest + shift * LABEL
+            free = all(first + LABEL <= start or first >= end for start, end in taken)
+            if free and first >= 0.0 and first + LABEL <= 1.0:
+                taken.append((first, first + LABEL))
+                ax.annotate(
+                    f"{position:.4g}{chr(0x2009) + unit if unit else ''}\n{height:.3g}",
+                    (position, height),
+                    xytext=({"center": 0, "left": 4, "right": -4}[side], 4),
+                    textcoords="offset points",
+                    ha=side,
+                    va="bottom",
+                    fontsize=8.5,
+                )
+                break

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 
 from hdrive_mbs.analysis.torsion import TorsionCurve
 from hdrive_mbs.plots.dispatch import plot
-from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, other_unit, readable, style
+from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, number, other_unit, readable, style
 
 ARCMIN_PER_MRAD = 180.0 * 60.0 / (np.pi * 1e3)
 
@@ -18,11 +18,11 @@ def plot_torsion(result: TorsionCurve, ax: Axes | None = None, *, label: str | N
     with house_look():
         fresh = ax is None
         ax = given_or_new(ax)
-        number = len([line for line in ax.get_lines() if not str(line.get_label()).startswith("_")])
-        name = label or f"{readable(result.measured)}{', slow loop' if result.loss else ''}"
+        drawn = len([line for line in ax.get_lines() if not str(line.get_label()).startswith("_")])
+        name = label or _label(result)
         order = np.arange(len(result.torque)) if result.loss else np.argsort(result.torque, kind="stable")
         torque, angle = result.torque[order], 1e3 * result.angle[order]
-        ax.plot(torque, angle, label=name, **style(number))
+        ax.plot(torque, angle, label=name, **style(drawn))
         for corner, at in zip(result.corner_torque, result.corner_angle, strict=True):
             _corner(ax, float(corner), 1e3 * float(at))
         if result.lost_motion > 0.0:
@@ -33,10 +33,16 @@ def plot_torsion(result: TorsionCurve, ax: Axes | None = None, *, label: str | N
             right = ax.secondary_yaxis("right", functions=other_unit(ARCMIN_PER_MRAD))
             right.set_ylabel("torsion angle [arcmin]")
             right.spines["right"].set_visible(True)
-        if result.loss:
-            ax.plot([], [], " ", label=f"loss per cycle {result.loss:.3g} J")
-        legend_above(ax)
+        legend_above(ax, columns=1)
     return ax
+
+
+def _label(result: TorsionCurve) -> str:
+    text = readable(result.measured)
+    if result.lost_motion > 0.0:
+        width = 1e3 * result.lost_motion
+        text += f", lost motion {number(width)}\u2009mrad = {number(width * ARCMIN_PER_MRAD)}\u2009arcmin"
+    return f"{text}, slow loop with {result.loss:.3g}\u2009J lost per cycle" if result.loss else text
 
 
 def _corner(ax: Axes, torque: float, angle: float) -> None:
@@ -56,13 +62,4 @@ def _gap(ax: Axes, lower: float, upper: float) -> None:
     """The lost motion as an arrow at zero torque."""
     ax.annotate(
         "", (0.0, upper), (0.0, lower), arrowprops={"arrowstyle": "<->", "color": GREY, "shrinkA": 0, "shrinkB": 0, "linewidth": 1.0}
-    )
-    ax.annotate(
-        f"lost motion\n{upper - lower:.4g}\u2009mrad = {(upper - lower) * ARCMIN_PER_MRAD:.3g}\u2009arcmin",
-        (0.0, lower),
-        xytext=(9, 1),
-        textcoords="offset points",
-        va="center",
-        fontsize=8.5,
-        color="#333333",
     )

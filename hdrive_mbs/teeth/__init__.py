@@ -23,5 +23,6 @@ here "seed I".  Misprints in it, each shown by a test:
 * (7)-(8): with v and theta counted in one sense, as in (3)-(4), the theta term needs a plus; the
   printed minus holds only with theta = +(3 w0/2 r0) sin 2phi, the function of the other stage;
 * phi3, phi4 - phi2 are not given: 2 phi/z3 and 2 phi/z4 for teeth counts that differ by 2;
-* \\|i\\| = 50, m = 0.3 mm and r02 = 29.3 mm do not go together with one unshifted module.
+* \\|i\\| = 50, m = 0.3 mm and r02 = 29.3 mm do not go together with one unshifted module: the ratio needs
+  (z2 - 100)(z4 - 100) = 10200, so z2 + z4 >= 402, a fibre in the middle of the rim z2 + z4 = 388.7.
 """

@@ -13,15 +13,18 @@ from hdrive_mbs.teeth.motion import placed
 from hdrive_mbs.teeth.polygons import BoolArray, Gap, signed_gap
 from hdrive_mbs.teeth.stage import Stage
 
-ANGLES = 1440
-"""Angles over a turn of the generator, every quarter degree; on 90 degrees there is one."""
+ANGLES = 720
+"""Angles over a turn of the generator, every half degree: between two of them a smooth gap bends by w0 (2 dphi)^2/8, some nm."""
+FINER = 32
+"""A step in which corners may clip is divided into so many: the radial motion in one is then below 2 w0 pi/(360 * 32), 0.2 um."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Clearances:
     """Gaps between full tooth outlines over a turn of the generator.  All teeth do the same one after the other.
 
-    angles : phi [rad] from the starting axis
+    angles : phi [rad] from the starting axis, even steps and finer ones where two corners may clip each other
+    weight : part of the turn that each angle stands for
     gap : signed distance [m] of the tooth from the nearer of the two rigid teeth beside it, negative where they overlap
     place : where it is, (n, 2) in m, in the frame of the rigid tooth (x across it, y from the rigid wheel's centre)
     feature : "tip corner" or "flank" and so on, of which wheel, per angle
@@ -33,6 +36,7 @@ class Clearances:
 
     stage: Stage
     angles: FloatArray
+    weight: FloatArray
     gap: FloatArray
     place: FloatArray
     feature: tuple[str, ...]
@@ -76,7 +80,7 @@ class Clearances:
     @property
     def zone(self) -> float:
         """Part of the circumference on which the teeth overlap radially, all waves together."""
-        return float(np.mean(self.in_mesh))
+        return float(np.sum(self.weight[self.in_mesh]))
 
     @property
     def teeth_in_engagement(self) -> float:
@@ -98,41 +102,50 @@ class Clearances:
 
     def loaded_teeth(self, windup: float, forward: bool = True) -> float:
         """Mean number of teeth in contact when the wheels have turned by windup [rad] after the first contact."""
-        return float(np.mean(self.play(forward) < windup)) * self.stage.flexible.teeth
+        return float(np.sum(self.weight[self.play(forward) < windup])) * self.stage.flexible.teeth
 
     def stiffness_factor(self, windup: float, forward: bool = True) -> float:
         """Secant mesh stiffness over that with all overlapping teeth in contact from the start.
 
-        Each tooth is a spring that begins to carry when its play is used up:  mean(max(0, windup - play)) / (windup * zone).
+        Each tooth is a spring that begins to carry when its play is used up:  mean(max(0, windup - play)) / (windup * zone),
+        the mean taken over all teeth.
         """
         carried = np.maximum(0.0, windup - self.play(forward))
-        return float(np.mean(carried) / (windup * self.zone))
+        return float(np.sum(self.weight * carried) / (windup * self.zone))
 
 
 @lru_cache(maxsize=64)
 def clearances(stage: Stage, number: int = ANGLES) -> Clearances:
-    """Clearances at ``number`` even angles over a turn of the generator against the flexspline."""
+    """Clearances over a turn of the generator against the flexspline.
+
+    number : even steps; the steps beside the smallest gap, and those in which the teeth begin or
+        cease to have a common height, are divided by FINER
+    """
     phi = 2.0 * np.pi * np.arange(number) / number
+    first = _measure(stage, phi)
+    before = np.flatnonzero((first.depth > 0.0) != (np.roll(first.depth, -1) > 0.0))
+    worst = int(np.argmin(first.gap))
+    split = np.unique(np.concatenate((before, [worst, (worst - 1) % number])))
+    inner = np.arange(1, FINER) / FINER * 2.0 * np.pi / number
+    return _measure(stage, np.sort(np.concatenate((phi, (phi[split][:, None] + inner).ravel()))))
+
+
+def _measure(stage: Stage, phi: FloatArray) -> Clearances:
     neighbours = beside(stage, phi)
     fixed = stage.rigid.outline()
     gaps = signed_gap(neighbours, fixed)
     nearer = np.argmin(gaps.distance, axis=1)[:, None]
-
-    def pick(values: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
-        index = nearer.reshape(nearer.shape + (1,) * (values.ndim - 2))
-        return np.take_along_axis(values, index, axis=1)[:, 0]
-
-    tip_radius = np.hypot(neighbours[:, 0, :, 0], neighbours[:, 0, :, 1])
     d = stage.direction
-    farthest = np.max(d * tip_radius, axis=1)
-    depth = farthest - d * stage.rigid.tip_radius
+    farthest = np.max(d * np.hypot(neighbours[:, 0, :, 0], neighbours[:, 0, :, 1]), axis=1)
+    step = np.diff(phi, append=phi[0] + 2.0 * np.pi)
     return Clearances(
         stage=stage,
         angles=phi,
-        gap=np.asarray(pick(gaps.distance), float),
-        place=np.asarray(pick(gaps.point), float),
+        weight=(step + np.roll(step, 1)) / (4.0 * np.pi),
+        gap=np.take_along_axis(gaps.distance, nearer, axis=1)[:, 0],
+        place=np.take_along_axis(gaps.point, nearer[..., None], axis=1)[:, 0],
         feature=tuple(_features(gaps, nearer, stage)),
-        depth=depth,
+        depth=farthest - d * stage.rigid.tip_radius,
         ahead=_free_turn(stage, neighbours[:, 1], fixed, ahead=True),
         behind=_free_turn(stage, neighbours[:, 0], fixed, ahead=False),
         overlap=np.any(gaps.overlap, axis=1),

@@ -74,7 +74,9 @@ def _harmonics(law: DeformationLaw) -> npt.NDArray[np.complex128]:
         raise LawError(f"{name}: w is zero everywhere; a wave generator has to deform the flexspline.")
     after = np.asarray(law.radial(angles + 2.0 * np.pi), float)
     if np.max(np.abs(after - w)) > 1e-6 * largest:
-        raise LawError(f"{name}: w is not the same after a turn (differs by {1e3 * np.max(np.abs(after - w)):.3g} mm); it must be periodic.")
+        raise LawError(
+            f"{name}: w is not the same after a turn (differs by {1e3 * np.max(np.abs(after - w)):.3g} mm); it must be periodic."
+        )
     coefficients = np.fft.rfft(w) / SAMPLES
     coefficients[1:] *= 2.0
     mean = float(coefficients[0].real)

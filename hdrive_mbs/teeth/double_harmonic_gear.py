@@ -20,7 +20,8 @@ class DoubleHarmonicGear(WaveGear):
     i14 = z2 z4 / (z2 z4 - z3 z2')   with wheel 3 held
 
     Stage I (2/3) meshes on the major axis of the generator, stage II (2'/4) on the minor one: four
-    zones a quarter turn apart.  Source: seed I; the ratio from Willis (``kinematics.py``).
+    zones a quarter turn apart.  z3 > z2 and z2' > z4, so the output always turns backwards.
+    Source: seed I; the ratio from Willis (``kinematics.py``).
     """
 
     flexspline_outer: ToothedWheel = option("z2, flexible, teeth outwards")
@@ -36,20 +37,6 @@ class DoubleHarmonicGear(WaveGear):
         if self.flexspline_outer.direction < 0 or self.flexspline_inner.direction > 0:
             raise ParameterError("DoubleHarmonicGear: the outer teeth of the flexspline must point outwards and the inner ones inwards.")
         self.stages()
-        if self.flexspline_inner.root_radius >= self.flexspline_outer.root_radius:
-            raise ParameterError(
-                f"DoubleHarmonicGear: no rim is left between the root circles of the flexspline, {1e3 * self.flexspline_inner.root_radius:g} mm "
-                f"inside and {1e3 * self.flexspline_outer.root_radius:g} mm outside."
-            )
-        if abs(1.0 / self._inverse_ratio() if self._inverse_ratio() else float("inf")) == float("inf"):
-            raise ParameterError(
-                "DoubleHarmonicGear: z2 z4 = z3 z2', so the output wheel stands still whatever the generator does. Change a number of teeth."
-            )
-
-    def _inverse_ratio(self) -> float:
-        z2, z3 = self.flexspline_outer.teeth, self.circular_spline.teeth
-        z2_inner, z4 = self.flexspline_inner.teeth, self.output_wheel.teeth
-        return (z2 * z4 - z3 * z2_inner) / (z2 * z4)
 
     def stages(self) -> tuple[Stage, ...]:
         return (

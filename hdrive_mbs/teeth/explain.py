@@ -14,8 +14,8 @@ def explain_clearances(result: Clearances) -> str:
     micro = 1e6
     if not result.interferes:
         return (
-            f"{stage.name}: no interference; smallest distance {micro * result.minimum:.1f} um ({result.feature[worst]}, {angle:.1f} deg from the "
-            f"starting axis), at the bottom {micro * min(result.radial_tip, result.radial_root):.1f} um, "
+            f"{stage.name}: no interference; smallest distance {micro * result.minimum:.1f} um ({result.feature[worst]}, {angle:.1f} deg "
+            f"from the starting axis), at the bottom {micro * min(result.radial_tip, result.radial_root):.1f} um, "
             f"{result.teeth_in_engagement:.0f} of {stage.flexible.teeth} teeth have a common height."
         )
     if min(result.radial_tip, result.radial_root) < 0.0:
@@ -27,8 +27,8 @@ def explain_clearances(result: Clearances) -> str:
         )
     if stage.passing_clearance <= 0.0:
         return (
-            f"{stage.name}: tip interference, tooth meets tooth on the starting axis with {-micro * stage.passing_clearance:.1f} um of common height; "
-            f"w0 = {1e3 * stage.withdrawal:.4g} mm does not draw them apart. Raise w0 or reduce the addendum."
+            f"{stage.name}: tip interference, tooth meets tooth on the starting axis with {-micro * stage.passing_clearance:.1f} um "
+            f"of common height; w0 = {1e3 * stage.withdrawal:.4g} mm does not draw them apart. Raise w0 or reduce the addendum."
         )
     feature = result.feature[worst]
     depth = 1e3 * result.depth[worst]
@@ -40,6 +40,6 @@ def explain_clearances(result: Clearances) -> str:
         else "Bring w0 closer to module * (difference of teeth)/2, or raise the backlash or the profile angle."
     )
     return (
-        f"{stage.name}: {kind}, up to {-micro * result.minimum:.1f} um ({feature}) at {angle:.1f} deg from the starting axis, where the teeth "
-        f"have {depth:.3f} mm of common height. {cure}"
+        f"{stage.name}: {kind}, up to {-micro * result.minimum:.1f} um ({feature}) at {angle:.1f} deg from the starting axis, where the "
+        f"teeth have {depth:.3f} mm of common height. {cure}"
     )

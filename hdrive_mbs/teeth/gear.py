@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.quantities import Described
+from hdrive_mbs.teeth.amplitude_window import AmplitudeWindow, amplitude_window
 from hdrive_mbs.teeth.clearance import Clearances, clearances
+from hdrive_mbs.teeth.explain import explain_clearances
 from hdrive_mbs.teeth.kinematics import GENERATOR, Mesh, ratio, speeds
 from hdrive_mbs.teeth.stage import Stage
 
@@ -18,6 +21,8 @@ class WaveGear(Described):
     """A gear with a wave generator, a flexspline and one or two rigid wheels."""
 
     _kind = "wave gear"
+    output: ClassVar[str] = ""
+    """The member that drives the machine when the circular spline is held."""
 
     def stages(self) -> tuple[Stage, ...]:
         """Pairs of conjugated wheels, from the input on."""
@@ -30,11 +35,6 @@ class WaveGear(Described):
 
     def meshes(self) -> tuple[Mesh, ...]:
         """Members and teeth of each mesh."""
-        raise NotImplementedError
-
-    @property
-    def output(self) -> str:
-        """The member that drives the machine when the circular spline is held."""
         raise NotImplementedError
 
     # -- kinematics ---------------------------------------------------------------------------------
@@ -67,8 +67,6 @@ class WaveGear(Described):
 
     def explain(self) -> str:
         """In words, stage by stage: why the teeth do or do not go together, and what to change."""
-        from hdrive_mbs.teeth.explain import explain_clearances
-
         return " ".join(explain_clearances(result) for result in self.clearances())
 
     # -- into the dynamics ---------------------------------------------------------------------------
@@ -80,6 +78,13 @@ class WaveGear(Described):
     def lost_motion(self) -> float:
         """Full width [rad] of the lost motion at the output, from the flank clearances of all stages."""
         return float(sum(abs(gain) * result.lost_motion for gain, result in zip(self.gains(), self.clearances())))
+
+    def amplitude_window(self) -> AmplitudeWindow:
+        """Range of w0 [m] around the present one in which no stage interferes, and what stops it."""
+        windows = [amplitude_window(stage) for stage in self.stages()]
+        low = max((window.low, window.reason_low) for window in windows)
+        high = min((window.high, window.reason_high) for window in windows)
+        return AmplitudeWindow(low=low[0], high=high[0], reason_low=low[1], reason_high=high[1])
 
     def loaded_teeth(self, windup: float, forward: bool = True) -> tuple[float, ...]:
         """Teeth in contact in each stage when each mesh has wound up by windup [rad] after its first contact."""

@@ -30,8 +30,8 @@ def check_assembly(name: str, flexible: int, rigid: int, waves: int, direction: 
         )
     if difference % waves:
         raise ParameterError(
-            f"{name}: the numbers of teeth {flexible} (flexible) and {rigid} (rigid) do not assemble: they differ by {difference}, which must "
-            f"be a multiple of the number of waves, {waves}. Take {flexible + direction * waves} teeth for the rigid wheel."
+            f"{name}: the numbers of teeth {flexible} (flexible) and {rigid} (rigid) do not assemble: they differ by {difference}, which "
+            f"must be a multiple of the number of waves, {waves}. Take {flexible + direction * waves} teeth for the rigid wheel."
         )
 
 
@@ -63,13 +63,14 @@ def speeds(meshes: Sequence[Mesh], *, driver: str, fixed: str) -> dict[str, floa
     right = np.zeros(len(rows))
     right[-1] = 1.0
     solution = np.linalg.solve(np.array(rows), right)
-    return {member: float(solution[k]) for member, k in index.items()}
+    found = {member: float(solution[k]) if abs(solution[k]) > 1e-12 else 0.0 for member, k in index.items()}
+    return found | {fixed: 0.0, driver: 1.0}
 
 
 def ratio(found: Mapping[str, float], driven: str) -> float:
     """Driver speed over driven speed, negative when they turn against each other."""
     if driven not in found:
         raise unknown_place("driven member", driven, found, "This gear")
-    if abs(found[driven]) < 1e-12:
+    if found[driven] == 0.0:
         raise ParameterError(f"{driven!r} stands still in this arrangement: it has no ratio. Hold or drive another member.")
     return 1.0 / found[driven]

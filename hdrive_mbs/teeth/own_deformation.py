@@ -75,5 +75,7 @@ class TableDeformation(DeformationLaw):
 def _scale(law: FunctionDeformation | TableDeformation, amplitude: float) -> float:
     now = law.on_major_axis
     if now <= 0.0:
-        raise ParameterError(f"{type(law).__name__}: w on the major axis (s = 0) is {1e3 * now:g} mm; it must be positive there to be scaled.")
+        raise ParameterError(
+            f"{type(law).__name__}: w on the major axis (s = 0) is {1e3 * now:g} mm; it must be positive there to be scaled."
+        )
     return law.scale * amplitude / now

@@ -49,8 +49,8 @@ class Stage(Described):
         allowed = reach + min(tip, root)
         if allowed <= 0.0:
             raise ParameterError(
-                f"{self.name}: negative clearance, the undeformed teeth already touch the bottom of the space: {tip - 0.0 + reach:.4g} mm from the "
-                f"flexible tip to the rigid root, {root + reach:.4g} mm from the rigid tip to the flexible root. Correct the radii."
+                f"{self.name}: negative clearance, the undeformed teeth already touch the bottom of the space: {tip + reach:.4g} mm from "
+                f"the flexible tip to the rigid root, {root + reach:.4g} mm from the rigid tip to the flexible root. Correct the radii."
             )
         if min(tip, root) < 0.0:
             where = "flexible tip enters the rigid root" if tip < root else "rigid tip enters the flexible root"
@@ -60,8 +60,8 @@ class Stage(Described):
             )
         if self.engagement_depth <= 0.0:
             raise ParameterError(
-                f"{self.name}: the teeth do not reach each other: with w = {reach:.4g} mm on the engagement axis {-1e3 * self.engagement_depth:.4g} mm "
-                "are missing. Raise w0, or the tooth height."
+                f"{self.name}: the teeth do not reach each other: with w = {reach:.4g} mm on the engagement axis "
+                f"{-1e3 * self.engagement_depth:.4g} mm are missing. Raise w0, or the tooth height."
             )
 
     # -- what follows from the data ---------------------------------------------------------------
@@ -147,7 +147,9 @@ class Stage(Described):
         """
         outward = 1 if rigid_teeth > flexible_teeth else -1
         if clearance < 0.0:
-            raise ParameterError(f"{name}: clearance = {1e3 * clearance:g} mm is negative; the teeth would enter the root. It must be at least 0 mm.")
+            raise ParameterError(
+                f"{name}: clearance = {1e3 * clearance:g} mm is negative; the teeth would enter the root. It must be at least 0 mm."
+            )
         if backlash < 0.0:
             raise ParameterError(f"{name}: backlash = {1e3 * backlash:g} mm is negative; the teeth would be thicker than their spaces.")
         if addendum <= 0.0 or module <= 0.0:

@@ -46,7 +46,7 @@ class ToothedWheel(Described):
         if widest * self.teeth > np.pi:
             raise ParameterError(
                 f"{name} with {self.teeth} teeth: the outlines of neighbouring teeth cross, the tooth is up to "
-                f"{2e3 * widest * self.root_radius:.4g} mm wide at a pitch of {2e3 * np.pi * self.root_radius / self.teeth:.4g} mm at the root. "
+                f"{2e3 * widest * self.root_radius:.4g} mm wide at a pitch of {1e3 * self.pitch_angle * self.root_radius:.4g} mm. "
                 "Make the tooth thinner, lower, or its flank steeper."
             )
 

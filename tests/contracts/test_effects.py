@@ -425,7 +425,7 @@ def test_it_refuses_numbers_that_are_not_finite(example: Example) -> None:
 
 
 def test_it_refuses_unknown_fields(example: Example) -> None:
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match="strenght"):
         type(example.effect)(strenght=1.0)
     with pytest.raises(PlaceError, match="strenght"):
         example.effect.replacing(strenght=1.0)

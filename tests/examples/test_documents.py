@@ -40,3 +40,12 @@ def test_every_relative_link_of_the_documents_exists() -> None:
     for path in DOCUMENTS:
         for target in re.findall(r"\]\((?!https?:|#)([^)#]+)", path.read_text("utf-8")):
             assert (path.parent / target).exists(), f"{path.name} links to {target}"
+
+
+def test_the_script_makes_the_pictures_that_the_documents_show(tmp_path: Path) -> None:
+    done = subprocess.run([sys.executable, ROOT / "docs" / "make_pictures.py", tmp_path], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    made = {Path(line).name for line in done.stdout.split()}
+    shown = {Path(target).name for path in DOCUMENTS for target in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", path.read_text("utf-8"))}
+    assert shown == made
+    assert all((tmp_path / name).read_bytes().startswith(b"\x89PNG") for name in made)

@@ -181,9 +181,10 @@ def integrate(
                 events=events or None, dense_output=True,
             )  # fmt: skip
             assert solution.success, solution.message
-            if not events or _stays_inside(train, regions, solution):
+            if not events or _stays_inside(train, regions, solution, 100.0 * relative):
                 break
             longest *= 0.1
+            assert longest > 1e-10, f"no step near t = {t:g} s stays in its piece {regions}"
         reached = float(solution.t[-1])
         count = int(np.searchsorted(wanted, reached, side="right"))
         if count:
@@ -231,16 +232,16 @@ def _events(train: ReferenceTrain, regions: Sequence[int]) -> tuple[list[Callabl
     return events, meaning
 
 
-def _stays_inside(train: ReferenceTrain, regions: Sequence[int], solution: Any) -> bool:
-    """Whether no variable left its piece, in the steps and at three points within each."""
+def _stays_inside(train: ReferenceTrain, regions: Sequence[int], solution: Any, share: float) -> bool:
+    """Whether no variable left its piece by more than ``share`` of it, in the steps and at three points within each."""
     steps = solution.t
-    inner = [steps[:-1] + share * np.diff(steps) for share in (0.25, 0.5, 0.75)]
+    inner = [steps[:-1] + part * np.diff(steps) for part in (0.25, 0.5, 0.75)]
     times = np.sort(np.concatenate([steps, *inner]))
     for t, y in zip(times.tolist(), solution.sol(times).T, strict=True):
         for edges, region, x in zip(train.edges, regions, train.variables(t, y.tolist()), strict=True):
             low = edges[region - 1] if region > 0 else -np.inf
             high = edges[region] if region < len(edges) else np.inf
-            slack = 1e-12 * max(1e-3, abs(x))
+            slack = share * max(1e-3, abs(x))
             if not low - slack <= x <= high + slack:
                 return False
     return True

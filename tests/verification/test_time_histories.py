@@ -46,9 +46,11 @@ class Case:
 
     scene: Callable[[], dict[str, Any]]
     reference: Callable[[], dict[str, Any]]
-    duration: float = 0.15
+    duration: float = 0.1
     speed: float = 0.0
     lowering: str = "symbolic"
+    jumps: bool = False
+    """Whether the gear torque itself jumps at an edge of the law."""
 
 
 def reference_of(case: Case) -> ReferenceTrain:
@@ -56,12 +58,21 @@ def reference_of(case: Case) -> ReferenceTrain:
     return ReferenceTrain(**(parts | case.reference()))
 
 
-def differences(response: hm.Response, reference: Reference) -> dict[str, float]:
-    """Largest difference over largest value for angles and speeds of all bodies and the gear torque."""
-    pairs = {"gear.torque": (response.values["gear.torque"], reference.torque)}
+def differences(response: hm.Response, reference: Reference, *, jumps: bool = False) -> dict[str, float]:
+    """Largest difference over largest value for angles and speeds of all bodies and the gear torque.
+
+    jumps : leave out samples of the torque nearer than 1e-8 s to a passage over an edge of the law: where it
+        jumps, two solutions that pass 1e-12 s apart differ by the whole jump
+    """
+    count = len(reference.times)
+    passed = np.array([t for t, which, _, _ in reference.passages if which == 0])
+    kept = np.ones(count, bool)
+    if jumps and len(passed):
+        kept = np.min(np.abs(reference.times[:, None] - passed[None, :]), axis=1) > 1e-8
+    pairs = {"gear.torque": (response.values["gear.torque"][:count][kept], reference.torque[kept])}
     for name in BODIES:
-        pairs[f"{name}.angle"] = (SENSE[name] * response.values[f"{name}.angle"], reference.angles[name])
-        pairs[f"{name}.speed"] = (SENSE[name] * response.values[f"{name}.speed"], reference.speeds[name])
+        pairs[f"{name}.angle"] = (SENSE[name] * response.values[f"{name}.angle"][:count], reference.angles[name])
+        pairs[f"{name}.speed"] = (SENSE[name] * response.values[f"{name}.speed"][:count], reference.speeds[name])
     return {name: float(np.max(np.abs(ours - theirs)) / np.max(np.abs(theirs))) for name, (ours, theirs) in pairs.items()}
 
 
@@ -118,6 +129,7 @@ FLEXSPLINES = {
     "catalogue, no damping inside the gap": Case(
         lambda: {"damping_in_gap": False},
         lambda: {"damping_in_gap": False},
+        jumps=True,
     ),
     "catalogue, load inside the gap torque": Case(
         lambda: {"load": hm.SineTorque(mean=4.0, amplitude=3.0, frequency=1.0)},
@@ -126,6 +138,7 @@ FLEXSPLINES = {
     "catalogue, load inside the gap torque, no damping there": Case(
         lambda: {"load": hm.SineTorque(mean=4.0, amplitude=3.0, frequency=1.0), "damping_in_gap": False},
         lambda: {"load": laws.sine(4.0, 3.0, 1.0), "damping_in_gap": False},
+        jumps=True,
     ),
     "catalogue, driven backwards by an overhauling load": Case(
         lambda: {"load": hm.ConstantTorque(value=-60.0)},
@@ -134,10 +147,12 @@ FLEXSPLINES = {
     "cubic": Case(
         lambda: {"stiffness": hm.CubicStiffness(linear=max(LINEAR, 0.0), cubic=CUBIC)},
         lambda: {"flexspline": laws.cubic_stiffness(max(LINEAR, 0.0), CUBIC), "gap": 0.0},
+        duration=0.06,
     ),
     "continuous": Case(
         lambda: {"stiffness": hm.ContinuousStiffness(lost_motion=LOST_MOTION, edge_stiffness=EDGE, quadratic=SQUARE, cubic=CUBE)},
         lambda: {"flexspline": continuous_reference((EDGE, SQUARE, CUBE), (EDGE, SQUARE, CUBE), 1.0)},
+        duration=0.06,
     ),
     "continuous, load inside the gap torque": Case(
         lambda: {
@@ -176,10 +191,12 @@ FLEXSPLINES = {
     "plain Python function": Case(
         lambda: {"stiffness": smooth_law},
         lambda: {"flexspline": smooth_reference(), "gap": 0.0},
+        duration=0.06,
     ),
     "plain Python function that can only be called back": Case(
         lambda: {"stiffness": unrecordable_law},
         lambda: {"flexspline": smooth_reference(), "gap": 0.0},
+        duration=0.02,
         lowering="python",
     ),
 }  # fmt: skip
@@ -192,7 +209,7 @@ def test_train_with_each_flexspline_law_follows_the_reference(name: str) -> None
         warnings.simplefilter("error" if case.lowering == "symbolic" else "ignore", hm.LoweringWarning)
         response, reference = compared(case)
     assert response.lowering["gear"] == case.lowering
-    worst = differences(response, reference)
+    worst = differences(response, reference, jumps=case.jumps)
     assert max(worst.values()) < LIMIT, worst
     if reference_of(case).edges[0]:
         assert any(which == 0 for _, which, _, _ in reference.passages)  # the law's kinks were really used
