@@ -14,9 +14,9 @@ from hdrive_mbs.writing import write_text, write_whole
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """A Markdown table that also reads well in a terminal."""
-    cells = [[str(item) for item in row] for row in rows]
-    widths = [max(len(row[k]) for row in [list(head), *cells]) for k in range(len(head))]
+    """A Markdown table that also reads well in a terminal; cells beyond 48 characters are not padded."""
+    cells = [[str(item).replace("|", "\\|") for item in row] for row in rows]
+    widths = [min(max(len(row[k]) for row in [list(head), *cells]), 48) for k in range(len(head))]
 
     def line(row: Sequence[str]) -> str:
         return "| " + " | ".join(item.ljust(width) for item, width in zip(row, widths, strict=True)) + " |"

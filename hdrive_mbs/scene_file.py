@@ -8,6 +8,7 @@ import inspect
 import json
 import os
 import pkgutil
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -19,7 +20,7 @@ from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import FileFormatError, HdriveError, UnitError, unknown_place
 from hdrive_mbs.quantities import Described, Quantity
 from hdrive_mbs.scene import PlacedEffect, Scene
-from hdrive_mbs.units import to_si
+from hdrive_mbs.units import factor, to_si
 from hdrive_mbs.writing import write_text
 
 FORMAT = "hdrive-mbs scene 1"
@@ -93,7 +94,7 @@ def load_scene(path: str | os.PathLike[str], types: Iterable[type[Described]] = 
     """
     source = Path(path)
     try:
-        text = source.read_bytes().decode("utf-8")
+        text = source.read_bytes().decode("utf-8-sig")
     except OSError as error:
         raise FileFormatError(f"{path}: cannot be read ({error.strerror or error}).") from error
     except UnicodeDecodeError as error:
@@ -120,14 +121,14 @@ def scene_from_dict(document: Any, types: Iterable[type[Described]] = ()) -> Sce
         if key not in allowed:
             raise FileFormatError(f"unknown entry {key!r}; a scene has {', '.join(sorted(allowed))}.")
     known = _known_types(types)
-    parts = {name: _build(entry, f"parts.{name}", Component, known) for name, entry in _mapping(document, "parts").items()}
+    parts = {name: _build(entry, f"parts.{name}", (Component,), known) for name, entry in _mapping(document, "parts").items()}
     placed = []
     for effect_name, entry in _mapping(document, "effects", optional=True).items():
         inner = dict(_as_mapping(entry, f"effects.{effect_name}"))
         at = inner.pop("at", None)
         if not isinstance(at, str):
             raise FileFormatError(f"effects.{effect_name}: 'at' must name a place.")
-        placed.append((effect_name, _build(inner, f"effects.{effect_name}", Effect, known), at))
+        placed.append((effect_name, _build(inner, f"effects.{effect_name}", (Effect,), known), at))
     chains = document.get("connections", [])
     if not isinstance(chains, list) or not all(isinstance(c, list) and all(isinstance(p, str) for p in c) for c in chains):
         raise FileFormatError("connections: must be a list of lists of places.")
@@ -173,10 +174,23 @@ def _known_types(extra: Iterable[type[Described]]) -> dict[str, type[Described]]
     return found | {kind.__name__: kind for kind in extra}
 
 
-def _build(entry: Any, where: str, base: type[Described], known: Mapping[str, type[Described]]) -> Described:
-    data = dict(_as_mapping(entry, where))
+def _usable(kind: type[Described]) -> bool:
+    """Whether a file can name the class: it is no base class and does not need a Python function."""
+    functions = any(str(field.type).startswith("Callable[") for field in dataclasses.fields(kind))
+    return not (inspect.isabstract(kind) or "_kind" in vars(kind) or functions)
+
+
+def _expected(field: dataclasses.Field[Any], known: Mapping[str, type[Described]]) -> tuple[type[Described], ...]:
+    """The described classes that the annotation of a field names."""
+    return tuple(known[word] for word in re.findall(r"\w+", str(field.type)) if word in known)
+
+
+def _build(entry: Any, where: str, bases: tuple[type[Described], ...], known: Mapping[str, type[Described]]) -> Described:
+    kinds = {key: kind for key, kind in known.items() if issubclass(kind, bases) and _usable(kind)}
+    if not isinstance(entry, Mapping):
+        raise FileFormatError(f"{where} = {entry!r}: must be a table with a type, one of: {', '.join(sorted(kinds))}.")
+    data = dict(entry)
     name = data.pop("type", None)
-    kinds = {key: kind for key, kind in known.items() if issubclass(kind, base) and not inspect.isabstract(kind)}
     kind = kinds.get(name) if isinstance(name, str) else None
     if kind is None:
         raise unknown_place("type", str(name), sorted(kinds), f"{where}: this entry")
@@ -186,7 +200,7 @@ def _build(entry: Any, where: str, base: type[Described], known: Mapping[str, ty
         path = f"{where}.{key}"
         if key not in fields:
             raise FileFormatError(f"{path}: unknown entry. {kind.__name__} has: {', '.join(fields)}.")
-        values[key] = _value(value, path, fields[key].metadata.get("quantity"), known)
+        values[key] = _value(value, path, fields[key], known)
     missing = [
         field.name
         for field in fields.values()
@@ -196,19 +210,21 @@ def _build(entry: Any, where: str, base: type[Described], known: Mapping[str, ty
         raise FileFormatError(f"{where}: {', '.join(missing)} of {kind.__name__} missing.")
     try:
         return kind(**values)
-    except HdriveError:
-        raise
+    except HdriveError as error:
+        raise type(error)(f"{where}: {error}") from error
     except Exception as error:  # a class of a user's own, or a base class that is not meant to be built
         raise FileFormatError(f"{where}: no {kind.__name__} can be made of these values ({type(error).__name__}: {error}).") from error
 
 
-def _value(value: Any, path: str, quantity: Quantity | None, known: Mapping[str, type[Described]]) -> Any:
+def _value(value: Any, path: str, field: dataclasses.Field[Any], known: Mapping[str, type[Described]]) -> Any:
+    quantity: Quantity | None = field.metadata.get("quantity")
     if quantity is None:
-        if isinstance(value, Mapping):
-            return _build(value, path, Described, known)
+        bases = _expected(field, known)
         if isinstance(value, list):
-            return tuple(_value(item, f"{path}[{k}]", None, known) for k, item in enumerate(value))
-        return value
+            return tuple(_build(item, f"{path}[{k}]", bases, known) if bases else item for k, item in enumerate(value))
+        if value is None or not bases:
+            return value
+        return _build(value, path, bases, known)
     if quantity.sequence:
         return _sequence(value, path, quantity)
     if isinstance(value, str):
@@ -217,10 +233,10 @@ def _value(value: Any, path: str, quantity: Quantity | None, known: Mapping[str,
         raise FileFormatError(f"{path} = {value!r}: must be a number with a unit, like '1.0 {quantity.unit}'.")
     if quantity.unit != "1":
         raise UnitError(f"{path} = {value!r} has no unit; write it as text, like '{value!r} {quantity.unit}'.")
-    return float(value)
+    return value
 
 
-def _sequence(value: Any, path: str, quantity: Quantity) -> tuple[float, ...]:
+def _sequence(value: Any, path: str, quantity: Quantity) -> tuple[Any, ...]:
     if not isinstance(value, Mapping) or set(value) != {"unit", "values"} or not isinstance(value["values"], list):
         raise FileFormatError(f"{path}: must be a table {{ unit = '{quantity.unit}', values = [...] }}.")
     for index, item in enumerate(value["values"]):
@@ -229,8 +245,9 @@ def _sequence(value: Any, path: str, quantity: Quantity) -> tuple[float, ...]:
     if not isinstance(value["unit"], str):
         raise UnitError(f"{path}.unit = {value['unit']!r}: must be a text like '{quantity.unit}'.")
     if value["unit"] == quantity.unit:
-        return tuple(float(item) for item in value["values"])
-    return tuple(to_si(f"{float(item)!r} {value['unit']}", quantity.unit, path) for item in value["values"])
+        return tuple(value["values"])
+    to_unit = factor(value["unit"], quantity.unit, path)
+    return tuple(item * to_unit for item in value["values"])
 
 
 def parse_setting(scene: Scene, text: str) -> tuple[str, Any]:

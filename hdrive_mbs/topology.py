@@ -69,7 +69,7 @@ def check_connections(parts: Mapping[str, Component], connections: Sequence[Sequ
 
 
 def _group(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> dict[str, str]:
-    """Flange path -> name of its node.  The node is named after its first part with a body."""
+    """Flange path -> name of its node, in the order of the connections.  A node is named after its first part with a body."""
     flanges = resolve_flanges(parts)
     parent = {path: path for path in [*flanges, GROUND]}
 
@@ -90,8 +90,9 @@ def _group(parts: Mapping[str, Component], connections: Sequence[Sequence[str]])
     members: dict[str, list[str]] = {}
     for path in [*flanges, GROUND]:
         members.setdefault(root(path), []).append(path)
+    line = {path: k for k, path in enumerate(path for pair in joints(parts, connections) for path in pair)}
     names: dict[str, str] = {}
-    for paths in members.values():
+    for paths in sorted(members.values(), key=lambda group: min(line.get(path, len(line)) for path in group)):
         # single-flange parts (motor, load) name the node; then gears; then shaft ends
         named = min(paths, key=lambda path: ("." in path, path.endswith((".a", ".b"))))
         node = GROUND if GROUND in paths else named

@@ -8,7 +8,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from benchmarks.speed.study import STABILITY
 from benchmarks.writing import facts, table
+from hdrive_mbs.plots.look import COLOURS, GREY, house_look, new_figure
 
 SYMBOLIC = "engine, symbolic: DormandPrince"
 PYTHON = "engine, Python functions: DormandPrince"
@@ -46,7 +48,11 @@ def _times(case: Mapping[str, Any], target: float) -> str:
             best = min((e, s) for e, s in zip(method["error"], method["median_seconds"], strict=True))
             rows.append((name, f"not reached: {best[0]:.1e} in {best[1]:.2f}", "-"))
     agreement = f"Two references (DOP853 at 1e-12, Radau at 1e-11) agree to {case['reference_agreement']:.1e}."
-    return f"{agreement}\n\n" + table((f"method, at an error of {target:g}", "CPU [s]", "over engine, symbolic"), rows)
+    limit = (
+        f"Fastest motion of the linearised train at 20 N m: {case['fastest_rate']:.3g} 1/s; DormandPrince stays stable with steps "
+        f"up to about {STABILITY:g} over that, which makes at least {case['fewest_steps']:.0f} steps."
+    )
+    return f"{agreement} {limit}\n\n" + table((f"method, at an error of {target:g}", "CPU [s]", "over engine, symbolic"), rows)
 
 
 def ratios(case: Mapping[str, Any]) -> dict[str, float]:
@@ -86,7 +92,10 @@ def _around(results: Mapping[str, Any]) -> str:
         ],
     )
     columns = [(name.replace(" [s]", ""), f"{1e3 * value:.2f}") for name, value in (*fresh.items(), *around.items())]
-    note = "The first five in fresh processes (wall clock), the rest warm (CPU); one simulated second at the default tolerances."
+    note = (
+        "CPU time; the first five in fresh processes, the rest warm. "
+        f"The run: {results['duration']:g} s simulated at the default tolerances."
+    )
     return f"{verdicts}\n\n{note}\n\n" + table(("part", "median [ms]"), columns)
 
 
@@ -101,23 +110,28 @@ def _runs(case: Mapping[str, Any]) -> str:
 
 def figure(results: Mapping[str, Any]) -> Figure:
     """Error against CPU time, one panel per case."""
+    with house_look():
+        return _figure(results)
+
+
+def _figure(results: Mapping[str, Any]) -> Figure:
     cases = list(results["cases"].values())
-    made = Figure(figsize=(6.4 * len(cases), 6.4), layout="constrained")
+    made = new_figure(5.8 * len(cases), 6.6)
     axes = made.subplots(1, len(cases), sharey=True, sharex=True, squeeze=False)[0]
-    colours = {"engine": "C0", "scipy LSODA": "C1", "scipy Radau": "C2", "compiled": "k"}
+    colours = {"engine": COLOURS[0], "scipy LSODA": COLOURS[1], "scipy Radau": COLOURS[2], "compiled": COLOURS[4]}
+    markers = {"RungeKutta4": "s", "Trapezoidal": "^", "odeint": "v"}
     for ax, case in zip(axes, cases, strict=True):
         for name, method in case["methods"].items():
             colour = next(value for start, value in colours.items() if name.startswith(start))
-            style = "--" if "compiled right" in name or "Python functions" in name else "-"
-            marker = {"Runge": "s", "Trape": "^", "odein": "v"}.get(next((w for w in ("Runge", "Trape", "odein") if w in name), ""), "o")
+            line = "--" if "compiled right" in name or "Python functions" in name else "-"
+            marker = next((value for word, value in markers.items() if word in name), "o")
             points = [(s, e) for s, e in zip(method["median_seconds"], method["error"], strict=True) if 0.0 < e < math.inf and s > 0.0]
             if points:
-                ax.loglog(*zip(*points, strict=True), style, color=colour, marker=marker, markersize=5, linewidth=1.4, label=name)
-        ax.axhline(results["target_error"], color="0.6", linewidth=0.8, zorder=0)
+                ax.loglog(*zip(*points, strict=True), color=colour, linestyle=line, marker=marker, markersize=5, label=name)
+        ax.axhline(results["target_error"], color=GREY, linestyle=":", linewidth=1.2)
         ax.set_xlabel(f"CPU time for {results['duration']:g} s simulated [s]")
-        ax.set_title(case["what"], fontsize=9)
-        ax.grid(True, which="major", alpha=0.3)
-    axes[0].set_ylabel("error: max over angles and speeds of max|difference| / max|channel| [1]")
+        ax.set_title(case["what"])
+    axes[0].set_ylabel("error, relative to the largest value of each channel [1]")
     handles, labels = axes[0].get_legend_handles_labels()
-    made.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=8)
+    made.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=8)
     return made

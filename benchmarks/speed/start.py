@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 _FRESH = """
 import json, time
-clock = time.perf_counter
+clock = time.process_time
 t0 = clock()
 import exudyn
 t1 = clock()
@@ -41,7 +41,7 @@ print(json.dumps({"exudyn": t1 - t0, "hdrive_mbs": t2 - t1, "names": t3 - t2, "b
 
 
 def fresh_processes(repeats: int) -> dict[str, float]:
-    """Medians over fresh processes, wall seconds: exudyn alone, then hdrive_mbs on top, then the first scene."""
+    """Medians over fresh processes, CPU seconds: exudyn alone, then hdrive_mbs on top, then the first scene."""
     seen: list[dict[str, float]] = []
     for _ in range(repeats):
         done = subprocess.run([sys.executable, "-c", _FRESH], cwd=ROOT, capture_output=True, text=True, check=True)

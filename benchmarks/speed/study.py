@@ -7,6 +7,8 @@ import statistics
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 import hdrive_mbs as hm
 from benchmarks.machine import machine
 from benchmarks.speed.methods import Method, methods
@@ -32,12 +34,12 @@ def study(*, quick: bool, repeats: int) -> dict[str, Any]:
     """Everything that the report needs."""
     duration = 0.01 if quick else 1.0
     facts = machine()
-    plan = {name: methods(case(name), duration) for name in CASES}
+    plan = {name: methods(case(name), duration) for name in (["train"] if quick else CASES)}
     if quick:
         plan = {name: [Method(m.name, m.ladder[1:3], m.run) for m in found] for name, found in plan.items()}
     runs = sum(len(method.ladder) for found in plan.values() for method in found) * repeats
     cases = {}
-    with progress_bar("speed of the train", runs + 20 * len(CASES)) as report:
+    with progress_bar("speed of the train", runs + 20 * len(plan)) as report:
         done = 0
         for name, found in plan.items():
             exact = reference(case(name), duration)
@@ -59,6 +61,7 @@ def study(*, quick: bool, repeats: int) -> dict[str, Any]:
             cases[name] = {
                 "what": CASES[name],
                 "reference_agreement": exact.agreement,
+                **_stability(case(name), duration),
                 "methods": {method.name: _method(method, seconds, errors, steps) for method in found},
             }
     return {
@@ -70,6 +73,18 @@ def study(*, quick: bool, repeats: int) -> dict[str, Any]:
         "around_a_run": around_a_run(1 if quick else 11, duration),
         "machine": facts,
     }
+
+
+STABILITY = 3.3
+"""Radius on the negative real axis inside which the Dormand-Prince method 5(4) is stable (Hairer & Wanner II, IV.2)."""
+
+
+def _stability(scene: hm.Scene, duration: float) -> dict[str, float]:
+    """The fastest eigenvalue of the train, running under 20 N m, and the steps that an explicit method needs for it."""
+    found = hm.modes(scene, torque=20.0)
+    oscillating = found.damped / np.sqrt(1.0 - found.damping_ratio**2)
+    fastest = float(max(np.max(oscillating, initial=0.0), np.max(found.decay_rates, initial=0.0)))
+    return {"fastest_rate": fastest, "fewest_steps": fastest * duration / STABILITY}
 
 
 Key = tuple[str, float]

@@ -113,7 +113,7 @@ def measure(
             raw = run(assembly, duration=duration, solver=solver, angles=begin["angles"], speeds=begin["speeds"], states={})
         except SimulationError as error:
             none = np.zeros(0)
-            return Measured(duration, np.nan, 0, 0, none, none, none, none, none, 0, failure=str(error).split(". ")[0])
+            return Measured(duration, np.nan, 0, 0, none, none, none, none, none, 0, failure=str(error).split(" with ")[0])
         seconds.append(raw.seconds)
     twist = raw.angles["gear.wave_generator"] / RATIO - raw.angles["gear.flexspline"]
     outside = np.abs(twist) > law.half_gap

@@ -80,7 +80,7 @@ def planned(durations: Durations, repeats: int) -> dict[tuple[str, str, str], Ca
         add(IN_GAP, name, EXPLICIT, load_in_gap(), durations.in_gap if jumps else durations.normal, 1 if jumps else repeats)
         for kind in (FIXED, IMPLICIT):
             add(IN_GAP, name, kind, load_in_gap(), durations.normal)
-        for kind in (EXPLICIT, IMPLICIT):
+        for kind in (EXPLICIT, IMPLICIT) if name != SMOOTHED else ():
             add(ABOVE, name, kind, load_above_gap(), durations.normal)
     for name in (JUMP, LITERAL, CONTINUOUS, CATALOGUE):
         add(START_UP, name, EXPLICIT, load_above_gap(), durations.normal, 1, start=REST)
@@ -267,12 +267,13 @@ def _above(pulses: Pulses, n: Numbers) -> Claim:
 
 def _start_up(n: Numbers) -> Claim:
     jump, literal, smooth = (n[START_UP, name, EXPLICIT] for name in (JUMP, LITERAL, CONTINUOUS))
-    ratio = jump["steps_per_second"] / smooth["steps_per_second"], literal["steps_per_second"] / smooth["steps_per_second"]
+    ratio = [run["steps_per_second"] / smooth["steps_per_second"] for run in (jump, literal)]
+    passages = [run["pulses_per_second"] * run["simulated_seconds"] for run in (jump, literal, smooth)]
     return Claim(
         "below Fig. 10",
         "the value of the load torque decides whether (11)-(14) can be used",
-        f"not at a start: from rest under the same load the train rebounds through the gap, {jump['pulses_per_second']:.3g} and "
-        f"{literal['pulses_per_second']:.3g} pulses/s against {smooth['pulses_per_second']:.0f}, {ratio[0]:.1f}x and {ratio[1]:.1f}x the steps",
+        f"not at a start: from rest under the same load the train rebounds through the gap, {passages[0]:.3g} and {passages[1]:.3g} "
+        f"passages of the edge against {passages[2]:.0f}, {ratio[0]:.1f}x and {ratio[1]:.1f}x the steps",
         judged(max(ratio) < 1.1, "holds in part: in steady running, not at a start"),
     )
 
@@ -304,11 +305,11 @@ def _implicit(n: Numbers) -> Claim:
 
 def _no_damping(n: Numbers) -> Claim:
     jump, smooth = n[NO_DAMPING, JUMP, EXPLICIT], n[NO_DAMPING, CONTINUOUS, EXPLICIT]
-    with_damping = n[IN_GAP, JUMP, EXPLICIT]
+    pulses, before = jump["pulses_per_second"], n[IN_GAP, JUMP, EXPLICIT]["pulses_per_second"]
     return Claim(
         "(2)-(3)",
         "B_FS acts inside the gap too, as written",
-        f"switched off there, the jump law makes {jump['pulses_per_second']:.2g} pulses/s ({with_damping['pulses_per_second']:.2g} with it), "
+        f"switched off there, the jump law makes {pulses:.2g} pulses/s ({before:.2g} with it), "
         f"{jump['steps_per_second']:.2g} steps/s; continuous {smooth['steps_per_second']:.2g} steps/s",
-        "a switch of ours; not the cause of the pulses" if jump["pulses_per_second"] > 0.0 else "a switch of ours; without it no pulses",
+        "a switch of ours; not the cause of the pulses" if pulses > 0.0 else "a switch of ours; without it no pulses",
     )

@@ -50,8 +50,9 @@ def reduction(duration: float) -> tuple[dict[str, Any], list[Claim]]:
         Claim(
             "section 2 [16]",
             "with shafts stiff against the flexspline two equations are enough",
-            f"first mode at {LOAD:g} N m {own.full_undamped[0]:.1f} -> {own.reduced_undamped[0]:.1f} rad/s ({100.0 * errors[1.0]:+.1f} %): the "
-            f"shafts of this train hold {100.0 * own.shaft_share:.0f} % of the compliance; they must be {needed:.0f}x stiffer for 1 %",
+            f"first mode at {LOAD:g} N m {own.full_undamped[0]:.1f} -> {own.reduced_undamped[0]:.1f} rad/s "
+            f"({100.0 * errors[1.0]:+.1f} %): the shafts of this "
+            f"train hold {100.0 * own.shaft_share:.0f} % of the compliance; they must be {needed:.0f}x stiffer for 1 %",
             judged(errors[1.0] < 0.01, f"does not hold for this train; from {needed:.0f}x stiffer shafts on it does"),
         ),
         Claim(

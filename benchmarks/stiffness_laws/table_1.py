@@ -77,7 +77,7 @@ def _parity() -> list[Claim]:
     return [
         Claim(
             "(11), (12)",
-            "describe the torque for |phi| > phi0/2, so for both senses",
+            "describe the torque outside the gap, so for both senses",
             f"with terms a and c of 5 N m each, M(+phi) + M(-phi) = {sum_11:g} N m by (11), {sum_12:g} N m by (12), not 0",
             judged(sum_11 == 0.0 and sum_12 == 0.0, "does not hold unless a = 0, in (11) c = 0 too"),
         ),

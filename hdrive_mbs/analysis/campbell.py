@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from hdrive_mbs.analysis.modes import Modes, modes_at
+from hdrive_mbs.analysis.modes import Modes, matching_damping, modes_at
 from hdrive_mbs.analysis.operating_point import operating_point, with_load
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.engine.assembly import assemble
@@ -81,7 +81,10 @@ def torsional_campbell(
     with speed, because the flexspline stiffens with torque.  Raises ParameterError for speeds that
     do not increase.
     """
-    grid = np.asarray(speeds, float)
+    try:
+        grid = np.asarray(speeds, float)
+    except (TypeError, ValueError):
+        grid = np.zeros(0)
     if grid.ndim != 1 or len(grid) < 2 or not np.all(np.diff(grid) > 0.0) or not np.all(np.isfinite(grid)):
         raise ParameterError("speeds: give at least two motor speeds [rad/s] in increasing order.")
     loaded = scene if torque is None else with_load(scene, torque)
@@ -117,14 +120,18 @@ def _lines(scene: Scene, orders: Mapping[str, Sequence[float]] | None) -> list[E
     network = scene.network()
     ratios = {body.name: body.ratio for body in network.bodies} | {m.name: m.ratio for m in network.motions}
     if orders is None:
-        reference = next(name for name, ratio in ratios.items() if abs(ratio - 1.0) < 1e-9)
+        reference = next((name for name, ratio in ratios.items() if abs(ratio - 1.0) < 1e-9), network.bodies[0].name)
         orders = {reference: (1.0, 2.0)}
+    if not isinstance(orders, Mapping):
+        raise ParameterError(f"orders = {orders!r}: must name places, like {{'motor': (1, 2)}}.")
     lines = []
     for place, numbers in orders.items():
         if place not in network.places:
             raise unknown_place("place", place, network.places)
         slope = abs(ratios[network.places[place]])
-        lines += [ExcitationOrder(order=float(number), place=place, slope=float(number) * slope) for number in numbers]
+        if not all(np.isfinite(number) and number > 0.0 for number in np.atleast_1d(numbers)):
+            raise ParameterError(f"orders of {place!r} = {numbers!r}: each must be a number greater than 0, per turn of the place.")
+        lines += [ExcitationOrder(order=float(number), place=place, slope=float(number) * slope) for number in np.atleast_1d(numbers)]
     return lines
 
 
@@ -137,7 +144,7 @@ def _track(points: list[Modes]) -> tuple[FloatArray, FloatArray]:
     branch: list[int] = []
     for row, point in enumerate(points):
         branch = list(range(len(point.undamped))) if previous is None else _assign(previous, branch, point, width)
-        damping = _matching_damping(point)
+        damping = matching_damping(point)
         for k, column in enumerate(branch):
             frequencies[row, column] = point.undamped[k]
             ratios[row, column] = damping[k]
@@ -159,22 +166,6 @@ def _assign(previous: Modes, branch: list[int], point: Modes, width: int) -> lis
     return [found[i] if i in found else free.pop(0) for i in range(cost.shape[0])]
 
 
-def _matching_damping(point: Modes) -> FloatArray:
-    """Damping ratio of the damped mode most like each undamped one (NaN where there is none)."""
-    result = np.full(len(point.undamped), np.nan)
-    if not len(point.damped) or not len(point.undamped):
-        return result
-    cost = np.empty((len(point.undamped), len(point.damped)))
-    for i, shape in enumerate(point.shapes.T):
-        for j, other in enumerate(point.damped_shapes.T):
-            likeness = abs(np.vdot(other, shape)) ** 2 / (np.vdot(other, other).real * (shape @ shape))
-            natural = point.damped[j] / np.sqrt(max(1.0 - point.damping_ratio[j] ** 2, 1e-12))
-            cost[i, j] = (1.0 - likeness) + abs(np.log(natural / point.undamped[i]))
-    for i, j in np.transpose(linear_sum_assignment(cost)):
-        result[i] = point.damping_ratio[j]
-    return result
-
-
 def _crossings(speeds: FloatArray, frequencies: FloatArray, lines: list[ExcitationOrder]) -> list[tuple[float, int, int]]:
     """Where  slope * speed = frequency, by linear interpolation between the speeds."""
     found = []
@@ -183,6 +174,10 @@ def _crossings(speeds: FloatArray, frequencies: FloatArray, lines: list[Excitati
             gap = line.slope * np.abs(speeds) - frequencies[:, branch]
             for k in range(len(speeds) - 1):
                 a, b = gap[k], gap[k + 1]
-                if np.isfinite(a) and np.isfinite(b) and (a == 0.0 or a * b < 0.0):
+                if not (np.isfinite(a) and np.isfinite(b)):
+                    continue
+                if a * b < 0.0:
                     found.append((float(speeds[k] - a * (speeds[k + 1] - speeds[k]) / (b - a)), index, branch))
+                elif a == 0.0 or (b == 0.0 and k == len(speeds) - 2):
+                    found.append((float(speeds[k] if a == 0.0 else speeds[k + 1]), index, branch))
     return sorted(found)

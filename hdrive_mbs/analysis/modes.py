@@ -8,6 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import linear_sum_assignment
 
 from hdrive_mbs.analysis.operating_point import OperatingPoint, operating_point, with_load
 from hdrive_mbs.analysis.result import Result
@@ -20,10 +21,11 @@ ComplexArray = npt.NDArray[np.complex128]
 
 _Shapes = TypeVar("_Shapes", FloatArray, ComplexArray)
 
-RIGID = 1e-5
-"""Frequencies below this share of the highest undamped one count as rigid-body motion.
+RIGID = 1e-7
+"""A mode x is a rigid-body motion where x'Kx is below this share of |x|'|K||x|, its terms without their signs.
 
-Exudyn differentiates user functions numerically, so an exact zero comes out as about 1e-7 of it.
+Exudyn differentiates user functions numerically, which leaves up to 1e-8 of an exact zero.  So a
+spring softer than 1e-7 of what it is connected to counts as open.
 """
 
 
@@ -91,11 +93,13 @@ def modes(scene: Scene, *, torque: float | None = None, motor_speed: float | Non
 def modes_at(scene: Scene, assembly: Assembly, point: OperatingPoint) -> Modes:
     """Modes of an assembled scene at a given state (build once, ask for many points)."""
     system = linearise(assembly, angles=point.angles, speeds=point.speeds, states=point.states)
-    undamped, shapes, rigid = _undamped(system)
+    undamped, shapes, rigid, left = _undamped(system)
     senses = np.array([body.sense for body in scene.network().bodies], float)
-    damped, ratio, damped_shapes, decay = _damped(system, undamped, rigid)
+    damped, ratio, damped_shapes, decay = _damped(system, left)
     notes = [f"{name} is inside its lost motion or backlash: stiffness 0 there" for name in point.in_gap]
     notes += [f"{name} sits at a corner of its law: its stiffness differs to either side" for name in point.at_corner]
+    if len(undamped) + rigid < len(system.bodies):
+        notes.append("statically unstable: a stiffness is negative there, and a motion grows")
     status = "; ".join(["complete", *notes])
     return Modes(
         scene=scene,
@@ -123,27 +127,46 @@ def _scaled(shapes: _Shapes) -> _Shapes:
     return shapes
 
 
-def _undamped(system: LinearSystem) -> tuple[FloatArray, FloatArray, int]:
-    """sqrt of the eigenvalues of M^-1 K (K of the bodies only, states at rest)."""
+def _undamped(system: LinearSystem) -> tuple[FloatArray, FloatArray, int, float]:
+    """sqrt of the eigenvalues of M^-1 K (states at rest), shapes, number of rigid motions and what is left of their zeros."""
     values, vectors = np.linalg.eig(np.linalg.solve(system.mass, system.stiffness))
     order = np.argsort(values.real)
     values, vectors = values[order].real, vectors[:, order].real
     frequencies = np.sqrt(np.maximum(values, 0.0))
-    top = float(frequencies.max(initial=0.0))
-    elastic = frequencies > RIGID * top if top > 0.0 else np.zeros(len(values), bool)
-    rigid = int(np.sum(~elastic & (np.abs(values) <= (RIGID * top) ** 2 if top > 0.0 else True)))
-    return frequencies[elastic], vectors[:, elastic], rigid
+    size = np.abs(vectors)
+    terms = np.einsum("ik,ij,jk->k", size, np.abs(system.stiffness), size)
+    mass = np.einsum("ik,ij,jk->k", vectors, system.mass, vectors)
+    zero = np.abs(values) * mass <= RIGID * terms
+    elastic = ~zero & (values > 0.0)
+    left = float(np.sqrt(np.abs(values[zero]).max(initial=0.0)))
+    return frequencies[elastic], vectors[:, elastic], int(zero.sum()), left
 
 
-def _damped(system: LinearSystem, undamped: FloatArray, rigid: int) -> tuple[FloatArray, FloatArray, ComplexArray, FloatArray]:
+def _damped(system: LinearSystem, left: float) -> tuple[FloatArray, FloatArray, ComplexArray, FloatArray]:
     n = len(system.bodies)
     values, vectors = np.linalg.eig(system.matrix)
     scale = float(np.max(np.abs(values), initial=0.0))
-    oscillating = values.imag > max(RIGID * float(undamped.max(initial=0.0)), 1e-9 * scale)
+    # what numerical differentiation leaves of the zeros of rigid-body motion, whose pairs lie near zero
+    floor = max(3.0 * left, 1e-9 * scale)
+    oscillating = values.imag > floor
     order = np.argsort(values[oscillating].imag)
     picked, shapes = values[oscillating][order], vectors[:n, oscillating][:, order]
     real = np.sort(-values[np.abs(values.imag) <= 1e-9 * scale].real)
-    # one zero per rigid-body angle; its partner is zero too unless something drags the motion
-    floor = max(RIGID * float(undamped.max(initial=0.0)), 1e-9 * scale) if rigid else 0.0
     decay = real[np.abs(real) > floor]
     return picked.imag, -picked.real / np.abs(picked), shapes, decay
+
+
+def matching_damping(point: Modes) -> FloatArray:
+    """Damping ratio of the damped mode most like each undamped one (NaN where there is none)."""
+    result = np.full(len(point.undamped), np.nan)
+    if not len(point.damped) or not len(point.undamped):
+        return result
+    cost = np.empty((len(point.undamped), len(point.damped)))
+    for i, shape in enumerate(point.shapes.T):
+        for j, other in enumerate(point.damped_shapes.T):
+            likeness = abs(np.vdot(other, shape)) ** 2 / (np.vdot(other, other).real * (shape @ shape))
+            natural = point.damped[j] / np.sqrt(max(1.0 - point.damping_ratio[j] ** 2, 1e-12))
+            cost[i, j] = (1.0 - likeness) + abs(np.log(natural / point.undamped[i]))
+    for i, j in np.transpose(linear_sum_assignment(cost)):
+        result[i] = point.damping_ratio[j]
+    return result

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from scipy.optimize import brentq
 
 from hdrive_mbs.components.load import Load
-from hdrive_mbs.errors import AnalysisError, PlaceError
+from hdrive_mbs.errors import AnalysisError, ParameterError, PlaceError
 from hdrive_mbs.loads.constant import ConstantTorque
 from hdrive_mbs.network.elements import Connection
 from hdrive_mbs.network.moment import Moment
@@ -67,7 +67,9 @@ def operating_point(scene: Scene, *, motor_speed: float | None = None, torque: f
     network = scene.network()
     if motor_speed is None:
         motor_speed = _balanced_speed(network)
-    return _balance(network, motor_speed)
+    if isinstance(motor_speed, str) or not np.isfinite(motor_speed):
+        raise ParameterError(f"motor_speed = {motor_speed!r}: must be a finite number, in rad/s.")
+    return _balance(network, float(motor_speed))
 
 
 def _moment(network: Network, speed: float, angles: FloatArray, states: FloatArray) -> Moment:

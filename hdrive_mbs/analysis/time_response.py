@@ -100,9 +100,15 @@ def simulate(
 
     Raises SimulationError when the run diverged or stopped early, ParameterError for bad arguments.
     """
-    if not (np.isfinite(duration) and duration > 0.0):
+    duration = _number("duration", duration, "s")
+    sample_step = _number("sample_step", sample_step, "s")
+    if duration <= 0.0:
         raise ParameterError(f"duration = {duration:g} s: must be greater than 0 s.")
+    if sample_step < 0.0:
+        raise ParameterError(f"sample_step = {sample_step:g} s: must be at least 0 s (0 records every step of the solver).")
     solver = solver if solver is not None else DormandPrince()
+    if not isinstance(solver, Solver):
+        raise ParameterError(f"solver = {solver!r}: must be a Solver, for instance DormandPrince() or RungeKutta4(step=1e-5).")
     network = scene.network()
     assembly = assemble(network, lowering=lowering)
     starts = initial_values(network, initial_speed, initial or {})
@@ -123,21 +129,34 @@ def simulate(
     return _response(scene, network, assembly, raw, settings | {"initial": dict(initial or {})}, error)
 
 
+def _number(name: str, value: Any, unit: str) -> float:
+    try:
+        number = float("x" if isinstance(value, str) else value)
+    except (TypeError, ValueError):
+        raise ParameterError(f"{name} = {value!r}: must be a number, in {unit}.") from None
+    if not np.isfinite(number):
+        raise ParameterError(f"{name} = {value} {unit}: must be a finite number.")
+    return number
+
+
 def initial_values(network: Network, speed: float, given: Mapping[str, float]) -> dict[str, dict[str, float]]:
     """Forward angles, speeds and states at t = 0."""
+    speed = _number("initial_speed", speed, "rad/s")
     angles = {body.name: 0.0 for body in network.bodies}
     speeds = {body.name: body.sense * body.ratio * speed for body in network.bodies}
     states = {state.name: state.initial for state in network.states}
     bodies = {body.name: body for body in network.bodies}
-    for name, value in given.items():
+    units = {"angle": "rad", "speed": "rad/s"} | {state.name: state.unit for state in network.states}
+    for name, given_value in given.items():
+        value = _number(f"initial value of {name}", given_value, units.get(name.rpartition(".")[2], units.get(name, "SI units")))
         place, _, quantity = name.rpartition(".")
         body = bodies.get(network.places.get(place, place))
         if name in states:
-            states[name] = float(value)
+            states[name] = value
         elif body is not None and quantity == "angle":
-            angles[body.name] = body.sense * float(value)
+            angles[body.name] = body.sense * value
         elif body is not None and quantity == "speed":
-            speeds[body.name] = body.sense * float(value)
+            speeds[body.name] = body.sense * value
         else:
             known = [f"{body.name}.angle/.speed" for body in network.bodies] + list(states)
             raise unknown_place("initial value", name, known)
@@ -151,25 +170,34 @@ def run_moment(network: Network, raw: RawRun) -> Moment:
 
 def read_over(function: Callable[[Moment], Value], moment: Moment) -> FloatArray:
     """A quantity over all moments; point by point where a law does not take arrays."""
-    shape = np.shape(moment.time)
-    try:
-        return np.broadcast_to(np.asarray(function(moment), float), shape).copy()
-    except (TypeError, ValueError):
-        pass
+    return _read_all(lambda m: {"": function(m)}, moment)[""]
 
-    def pick(values: Mapping[str, Value], k: int) -> dict[str, float]:
+
+def _read_all(function: Callable[[Moment], Mapping[str, Value]], moment: Moment) -> dict[str, FloatArray]:
+    """Several quantities over all moments.
+
+    A law for plain numbers may fail on arrays, or not fail and mean something else (``max``,
+    ``np.sum``), so three points are compared.
+    """
+    count = len(moment.time)
+    with np.errstate(all="ignore"):
+        try:
+            whole = {name: np.broadcast_to(np.asarray(value, float), (count,)).copy() for name, value in function(moment).items()}
+            for k in {count // 3, 2 * count // 3, count - 1} if count else ():
+                for name, value in function(_point(moment, k)).items():
+                    if not np.isclose(whole[name][k], float(value), rtol=1e-9, atol=1e-12, equal_nan=True):
+                        raise ValueError(name)
+            return whole
+        except Exception:  # whatever the law raises, the points below raise again if it is real
+            rows = [function(_point(moment, k)) for k in range(count)]
+            return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+def _point(moment: Moment, k: int) -> Moment:
+    def pick(values: Mapping[str, Value]) -> dict[str, float]:
         return {name: float(value[k]) for name, value in values.items()}
 
-    points = (
-        Moment(
-            time=float(moment.time[k]),
-            angles=pick(moment.angles, k),
-            speeds=pick(moment.speeds, k),
-            states=pick(moment.states, k),
-        )
-        for k in range(shape[0])
-    )
-    return np.array([float(function(point)) for point in points])
+    return Moment(time=float(moment.time[k]), angles=pick(moment.angles), speeds=pick(moment.speeds), states=pick(moment.states))
 
 
 def _response(
@@ -186,11 +214,7 @@ def _response(
         units[channel.name], docs[channel.name] = channel.unit, channel.doc
         if channel.slope:
             slopes[channel.name] = channel.slope
-    try:
-        rates = network.accelerations(moment)
-        rates = {name: np.broadcast_to(np.asarray(value, float), raw.times.shape).copy() for name, value in rates.items()}
-    except (TypeError, ValueError):
-        rates = {name: read_over(lambda m, n=name: network.accelerations(m)[n], moment) for name in [*senses, *raw.states]}  # type: ignore[misc]
+    rates = _read_all(network.accelerations, moment)
     for place, node in network.places.items():
         if node in senses and f"{place}.speed" in values:
             name = f"{place}.acceleration"
@@ -225,7 +249,7 @@ def _difference(network: Network, coarse: RawRun, fine: RawRun) -> dict[str, flo
     Compared at the times of the coarser run: with half the step they are times of both.
     """
     moment = run_moment(network, fine)
-    slopes = {name: read_over(lambda m, n=name: network.accelerations(m)[n], moment) for name in [*fine.speeds, *fine.states]}  # type: ignore[misc]
+    slopes = _read_all(network.accelerations, moment)
     result = {}
 
     def compare(name: str, rough: FloatArray, good: FloatArray, slope: FloatArray) -> None:

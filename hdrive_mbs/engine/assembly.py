@@ -19,6 +19,7 @@ from exudyn import itemInterface as item  # noqa: N813
 from hdrive_mbs.engine.guard import check_connector, check_coupling
 from hdrive_mbs.engine.records import CoupledRecord, ScalarRecord, make_record
 from hdrive_mbs.engine.symbolic import SYMBOLIC_VECTOR_LIMIT, connector_function, generic_function
+from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Expression, variables
 from hdrive_mbs.expression.python_code import scalar_function
 from hdrive_mbs.network.moment import Moment
@@ -75,6 +76,8 @@ def assemble(network: Network, *, lowering: str = "symbolic", guard: bool = True
     Warns LoweringWarning for a law that had to stay a Python callback; raises LawError when a
     lowered law differs from the plain one.
     """
+    if lowering not in ("symbolic", "python"):
+        raise ParameterError(f"lowering = {lowering!r}: must be 'symbolic' or 'python'.")
     builder = _Builder(network, lowering, guard)
     for element in network.elements:
         record = make_record(element, network)

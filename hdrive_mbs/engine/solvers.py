@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import exudyn as exu
 
+from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.quantities import Described, parameter
 
 
@@ -52,7 +53,7 @@ class DormandPrince(Solver):
         integration.numberOfSteps = max(1, math.ceil(duration / self.max_step))
         integration.minimumStepSize = 1e-14
         # exudyn would try max_step first; where that overflows its error is NaN, and NaN passes as accepted
-        integration.initialStepSize = min(self.first_step, self.max_step)
+        integration.initialStepSize = min(self.first_step, self.max_step, duration)
         return exu.DynamicSolverType.DOPRI5
 
     def refined(self) -> DormandPrince:
@@ -69,8 +70,10 @@ class FixedStep(Solver):
     step: float = parameter("s", "constant step", above=0.0)
 
     def steps(self, settings: Any, duration: float) -> None:
+        if self.step > duration:
+            raise ParameterError(f"{type(self).__name__}.step = {self.step:g} s is longer than the run of {duration:g} s; take a smaller one.")
         settings.timeIntegration.automaticStepSize = False
-        settings.timeIntegration.numberOfSteps = max(1, round(duration / self.step))
+        settings.timeIntegration.numberOfSteps = max(1, math.ceil(duration / self.step * (1.0 - 1e-12)))
 
     def refined(self) -> Solver:
         return self.replacing(step=self.step / 2.0)

@@ -7,7 +7,7 @@ from typing import Any
 
 import exudyn as exu
 
-from hdrive_mbs.expression import Expression, constant, in_order, variable
+from hdrive_mbs.expression import Expression, Pieces, constant, in_order, variable
 
 esym = exu.symbolic
 
@@ -41,12 +41,34 @@ def emit(expression: Expression, values: dict[str, Any]) -> Any:
             made = values[node.data]
         elif node.operation == "where":
             made = esym.IfThenElse(*arguments)
+        elif node.operation == "pieces":
+            made = _bisection(node.data, arguments[0])
         elif len(arguments) == 1:
             made = _UNARY[node.operation](arguments[0])
         else:
             made = _BINARY[node.operation](*arguments)
         known[id(node)] = made
     return known[id(expression)]
+
+
+def _bisection(pieces: Pieces, x: Any) -> Any:
+    """A table as nested branches: log2 of its length is evaluated, whatever its length."""
+    breaks, starts = pieces.breaks.tolist(), pieces.starts.tolist()
+    rows = pieces.coefficients.tolist()
+
+    def piece(i: int) -> Any:
+        value = esym.Real(rows[i][-1])
+        for coefficient in rows[i][-2::-1]:
+            value = value * (x - starts[i]) + coefficient
+        return value
+
+    def between(first: int, last: int) -> Any:
+        if first == last:
+            return piece(first)
+        middle = (first + last) // 2
+        return esym.IfThenElse(x < breaks[middle], between(first, middle), between(middle + 1, last))
+
+    return between(0, len(starts) - 1)
 
 
 def _operation(expression: Expression, name: str) -> Expression:

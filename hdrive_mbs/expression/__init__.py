@@ -15,11 +15,13 @@ from __future__ import annotations
 from hdrive_mbs.expression import numpy_functions
 from hdrive_mbs.expression.calculus import derivative, gradient
 from hdrive_mbs.expression.node import Expression, TraceError, Value, constant, is_constant, variable
+from hdrive_mbs.expression.pieces import Pieces, unfold
 from hdrive_mbs.expression.python_code import scalar_function, scalar_source
 from hdrive_mbs.expression.use import evaluate, in_order, record, trace, variables
 
 __all__ = [
     "Expression",
+    "Pieces",
     "TraceError",
     "Value",
     "constant",
@@ -33,6 +35,7 @@ __all__ = [
     "scalar_function",
     "scalar_source",
     "trace",
+    "unfold",
     "variable",
     "variables",
 ]

@@ -40,6 +40,8 @@ def _differentiate(node: Expression, slopes: list[Expression], name: str) -> Exp
         return choose(first < second, slopes[0], slopes[1])
     if all(is_constant(item, 0.0) for item in slopes):
         return constant(0.0)
+    if operation == "pieces":
+        return as_node(node.data.derivative()(args[0]) * slopes[0])
     return as_node(_RULES[operation](node, *args, *slopes))
 
 

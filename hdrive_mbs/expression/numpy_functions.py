@@ -24,35 +24,17 @@ from hdrive_mbs.expression.node import (
     negate,
     power,
 )
+from hdrive_mbs.expression.pieces import lines_between
 
 
 def _interp(x: Any, xp: Sequence[float], fp: Sequence[float], left: Any = None, right: Any = None, period: Any = None) -> Expression:
-    """np.interp as a bisection tree of linear pieces, so the cost grows with log2 of the points."""
+    """np.interp as one node, however long the table is."""
     if period is not None:
         raise TraceError("np.interp with period= cannot be recorded; write np.interp(np.mod(x, period), ...)")
     xs, ys = np.asarray(xp, float), np.asarray(fp, float)
     if xs.ndim != 1 or xs.shape != ys.shape or not len(xs) or np.any(np.diff(xs) < 0.0):
         raise TraceError(f"np.interp needs as many values ({ys.shape}) as rising points ({xs.shape})")
-    u = as_node(x)
-    low = constant(ys[0] if left is None else left)
-    high = constant(ys[-1] if right is None else right)
-    # a step in the table (two values at one point) is a piece of no width, which is never chosen
-    wide = [i for i in range(len(xs) - 1) if xs[i + 1] > xs[i]]
-
-    def piece(i: int) -> Expression:
-        slope = (ys[i + 1] - ys[i]) / (xs[i + 1] - xs[i])
-        return (u - float(xs[i])) * float(slope) + float(ys[i])
-
-    def tree(first: int, last: int) -> Expression:
-        if last - first == 1:
-            return piece(wide[first])
-        middle = (first + last) // 2
-        return choose(u < xs[wide[middle]], tree(first, middle), tree(middle, last))
-
-    inside = tree(0, len(wide)) if wide else constant(ys[-1])
-    if len(xs) > 1 and xs[-2] == xs[-1]:
-        inside = choose(u < xs[-1], inside, constant(ys[-1]))
-    return choose(u < xs[0], low, choose(u > xs[-1], high, inside))
+    return as_node(lines_between(xs, ys, ys[0] if left is None else left, ys[-1] if right is None else right)(as_node(x)))
 
 
 def _polyval(p: Sequence[Any], x: Any) -> Expression:

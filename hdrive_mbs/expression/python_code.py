@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from hdrive_mbs.expression.node import Expression
+from hdrive_mbs.expression.pieces import unfold
 from hdrive_mbs.expression.use import evaluate, in_order
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/", "lt": "<", "le": "<=", "eq": "=="}
@@ -51,6 +52,7 @@ def scalar_source(expressions: Sequence[Expression], arguments: Sequence[str], n
     that branch is chosen.  ``otherwise_(names...)`` is called where Python's math raises.
     """
     rename = dict(zip(arguments, names, strict=True))
+    expressions = unfold(*expressions)
     nodes = in_order(*expressions)
     body = _Block(None)
     place: dict[int, _Block] = {}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -63,11 +63,15 @@ def evaluate(expression: Expression, values: Mapping[str, Value]) -> Value:
         elif node.operation == "variable":
             known[id(node)] = values[node.data]
         else:
-            known[id(node)] = _rebuild(node.operation, [known[id(item)] for item in node.arguments])
+            known[id(node)] = rebuilt(node, [known[id(item)] for item in node.arguments])
     return known[id(expression)]
 
 
-def _rebuild(operation: str, arguments: list[Value]) -> Value:
+def rebuilt(node: Expression, arguments: Sequence[Value]) -> Value:
+    """The operation of a node on other arguments."""
+    operation = node.operation
+    if operation == "pieces":
+        return node.data(arguments[0])
     if any(isinstance(item, Expression) for item in arguments):
         wrapped = [as_node(item) for item in arguments]
         build = _BUILD.get(operation)

@@ -102,14 +102,14 @@ def smallest_gaps(designs: StageArrays, unit: UnitFibre, start: float, stop_belo
     every = np.arange(0, len(unit.s), COARSE)[None, :]
     window = np.arange(-COARSE, COARSE + 1)
     for chosen, some in designs.chunks():
-        table, mesh = _separations(some, unit, start, np.broadcast_to(every, (len(some), every.shape[1])))
-        share[chosen] = np.mean(mesh, axis=1)
+        table, depth = _separations(some, unit, start, np.broadcast_to(every, (len(some), every.shape[1])))
+        share[chosen] = _positive_part(depth)
         worst = np.argmin(table, axis=1)
         gap[chosen], place[chosen] = np.min(table, axis=1), start - unit.s[every[0, worst]]
         near = np.flatnonzero(gap[chosen] >= stop_below)
         if not len(near):
             continue
-        entry = np.argmax(mesh[near], axis=1)
+        entry = np.argmax(depth[near] > 0.0, axis=1)
         around = every[0, np.concatenate((worst[near, None], entry[:, None]), axis=1)][:, :, None] + window
         index = np.clip(around.reshape(len(near), -1), 0, len(unit.s) - 1)
         fine, _ = _separations(some.part(near), unit, start, index)
@@ -122,8 +122,8 @@ def smallest_gaps(designs: StageArrays, unit: UnitFibre, start: float, stop_belo
     return gap, place, share
 
 
-def _separations(d: StageArrays, unit: UnitFibre, start: float, index: npt.NDArray[np.intp]) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
-    """Separations at the angles of that index, one row per design (infinite out of mesh), and which are in mesh."""
+def _separations(d: StageArrays, unit: UnitFibre, start: float, index: npt.NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
+    """Separations at the angles of that index, one row per design (infinite out of mesh), and common heights."""
     r0 = d.fibre_radius
     size = d.amplitude[:, None]
     w = size * unit.w[index] + size**2 / r0 * unit.contraction
@@ -132,7 +132,8 @@ def _separations(d: StageArrays, unit: UnitFibre, start: float, index: npt.NDArr
     phi = start - unit.s[index]
     tangential, radial = _carried(_tooth(d.flexible_flank), w, v, theta, r0)
     farthest = np.max(d.direction * np.hypot(tangential, radial), axis=-1)
-    mesh = np.asarray(farthest > d.direction * d.rigid_tip[:, None])
+    depth = np.asarray(farthest - d.direction * d.rigid_tip[:, None], float)
+    mesh = depth > 0.0
     design, step = np.nonzero(mesh)
     turned = d.relative_turn * phi[design, step]
     x, y = tangential[design, step], radial[design, step]
@@ -147,7 +148,16 @@ def _separations(d: StageArrays, unit: UnitFibre, start: float, index: npt.NDArr
         gap = np.minimum(gap, _separation(moving, fixed))
     table = np.full(mesh.shape, np.inf)
     table[design, step] = gap
-    return table, mesh
+    return table, depth
+
+
+def _positive_part(values: FloatArray) -> FloatArray:
+    """Part of the way along each row on which the values, joined by straight lines, are positive."""
+    above = np.maximum(values, 0.0)
+    size = np.abs(values[:, 1:]) + np.abs(values[:, :-1])
+    both = values[:, 1:] * values[:, :-1] > 0.0
+    part = np.where(both, above[:, 1:] > 0.0, (above[:, 1:] + above[:, :-1]) / np.where(size > 0.0, size, 1.0))
+    return np.asarray(np.mean(part, axis=1), float)
 
 
 def _tooth(flank: FloatArray) -> FloatArray:

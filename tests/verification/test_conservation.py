@@ -279,7 +279,6 @@ def test_reactions_of_the_mesh_sum_to_zero_and_do_no_work_in_rigid_motion(sense:
         assert len(true) == 3
         assert abs(sum(true.values())) < 1e-12 * max(map(abs, true.values()))
         # virtual work: in any motion with w_fs = w_wg/i + (1 - 1/i) w_cs the three torques do no work
-        wave, spline = (name for name in ("gear.wave_generator", "housing"))
         body_of = network.places
         torques = {place: true[body_of[place]] for place in ("gear.wave_generator", "gear.flexspline", "gear.circular_spline")}
         w_wg, w_cs = rng.normal(size=2)

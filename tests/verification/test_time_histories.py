@@ -14,7 +14,7 @@ import pytest
 import hdrive_mbs as hm
 from tests.verification import reference_laws as laws
 from tests.verification.reference_train import BODIES, Reference, ReferenceTrain, integrate
-from tests.verification.scenes import LOST_MOTION, SENSE, kloss_motor, train
+from tests.verification.scenes import LOST_MOTION, SENSE, train
 
 LIMIT = 1e-6
 """Largest difference over largest value, per channel."""
