@@ -37,7 +37,8 @@ class Reference:
 
 def reference(scene: hm.Scene, duration: float) -> Reference:
     """Integrate the train twice, by two families of methods, and compare."""
-    right = compiled_right_side(scene) if numba_or_none() is not None else python_right_side(scene)
+    long = duration > 0.1  # then compiling pays
+    right = compiled_right_side(scene) if long and numba_or_none() is not None else python_right_side(scene)
     times, states = _integrate(right, duration, "DOP853", 1e-12, 1e-14, (1e-5, 3e-5))
     accelerations = np.array([right(t, y) for t, y in zip(times.tolist(), states.T, strict=True)])[:, 4:]
     angles = BPoly.from_derivatives(times, np.stack([states[:4].T, states[4:].T, accelerations], axis=1))

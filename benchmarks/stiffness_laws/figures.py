@@ -130,9 +130,8 @@ def _figures_9_10(pulses: Pulses) -> Figure:
     whole[0].set_title("Fig. 9: load torque against M_A at the edge of the gap")
     whole[0].set_ylabel("load torque [N\u2009m]")
     for row, name in ((1, JUMP), (2, CONTINUOUS)):
-        whole[row].plot(
-            fixed[name].times, fixed[name].elastic, color=COLOURS[1 if row == 1 else 3], linewidth=0.5, linestyle="-", rasterized=True
-        )
+        width = 0.5 if name == JUMP else 1.3
+        whole[row].plot(fixed[name].times, fixed[name].elastic, color=COLOURS[row % 2], linewidth=width, linestyle="-")
         whole[row].set_ylabel(TORQUE)
     whole[1].set_title("Fig. 10: jump law (11)-(14), RungeKutta4 with h = 20 \u00b5s")
     whole[2].set_title("the same with the continuous law (15)-(17)")

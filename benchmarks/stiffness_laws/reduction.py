@@ -60,7 +60,7 @@ def reduction(duration: float) -> tuple[dict[str, Any], list[Claim]]:
             "(what it saves, and what it misses)",
             f"largest gear torque of the start-up {peaks[0]:.1f} -> {peaks[1]:.1f} N m ({100.0 * (peaks[1] / peaks[0] - 1.0):+.0f} %); "
             f"{full.steps} -> {reduced.steps} steps, {full.seconds:.3f} -> {reduced.seconds:.3f} s of CPU time",
-            "saves the fast modes' steps, not the physics",
+            f"{full.steps / reduced.steps:.0f}x fewer steps",
         ),
     ]
     counted, claim = _rotor_counted_twice(scene, full)
@@ -78,5 +78,5 @@ def _rotor_counted_twice(scene: hm.Scene, full: hm.Response) -> tuple[dict[str, 
         "the motor gives M_n = M_s(n) - J_s phi''",
         f"(1) has J_s phi'' already; counted twice, 90 % of the speed is reached after {1e3 * reached[1]:.1f} ms instead of "
         f"{1e3 * reached[0]:.1f} ms",
-        "does not hold; M_s(n) belongs into (1)",
+        judged(abs(reached[1] / reached[0] - 1.0) < 0.01, "does not hold; M_s(n) belongs into (1)"),
     )

@@ -67,9 +67,9 @@ def operating_point(scene: Scene, *, motor_speed: float | None = None, torque: f
     network = scene.network()
     if motor_speed is None:
         motor_speed = _balanced_speed(network)
-    if isinstance(motor_speed, str) or not np.isfinite(motor_speed):
-        raise ParameterError(f"motor_speed = {motor_speed!r}: must be a finite number, in rad/s.")
-    return _balance(network, float(motor_speed))
+    if not np.isfinite(motor_speed):
+        raise ParameterError(f"motor_speed = {motor_speed} rad/s: must be a finite number.")
+    return _balance(network, motor_speed)
 
 
 def _moment(network: Network, speed: float, angles: FloatArray, states: FloatArray) -> Moment:

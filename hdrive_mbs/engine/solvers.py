@@ -71,7 +71,7 @@ class FixedStep(Solver):
 
     def steps(self, settings: Any, duration: float) -> None:
         if self.step > duration:
-            raise ParameterError(f"{type(self).__name__}.step = {self.step:g} s is longer than the run of {duration:g} s; take a smaller one.")
+            raise ParameterError(f"{type(self).__name__}.step = {self.step:g} s is longer than the run of {duration:g} s; shorten it.")
         settings.timeIntegration.automaticStepSize = False
         settings.timeIntegration.numberOfSteps = max(1, math.ceil(duration / self.step * (1.0 - 1e-12)))
 

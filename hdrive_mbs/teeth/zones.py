@@ -47,8 +47,7 @@ def stage_zones(stage: Stage) -> tuple[Zone, ...]:
         end = min(where[j] + (2.0 * np.pi if where[j] <= begin else 0.0) for j in ends)
         centre = 0.5 * (begin + end)
         turn = 2.0 * np.pi * np.floor(centre / (2.0 * np.pi) + 1e-9)
+        centre, begin, end = (float(np.round(value - turn, 12)) + 0.0 for value in (centre, begin, end))
         teeth = (end - begin) / (2.0 * np.pi) * stage.flexible.teeth
-        found.append(
-            Zone(stage=stage.name, centre=float(centre - turn), begin=float(begin - turn), end=float(end - turn), teeth=float(teeth))
-        )
+        found.append(Zone(stage=stage.name, centre=centre, begin=begin, end=end, teeth=float(teeth)))
     return tuple(found)

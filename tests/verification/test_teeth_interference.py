@@ -55,7 +55,7 @@ def random_stages(count: int, seed: int) -> list[hm.Stage]:
 def test_distances_and_overlaps_are_those_of_shapely() -> None:
     rng = np.random.default_rng(4)
     apart = overlapping = 0
-    for stage in random_stages(60, seed=1):
+    for stage in random_stages(40, seed=1):
         moving = beside(stage, rng.uniform(0.0, 2.0 * np.pi, 40)).reshape(-1, 7, 2)
         fixed = stage.rigid.outline()
         gap = signed_gap(moving, fixed)
@@ -78,14 +78,14 @@ def test_distances_and_overlaps_are_those_of_shapely() -> None:
             assert 1e3 * gap.distance[k] == pytest.approx(-max(depths), abs=1e-12)
         apart += int(np.sum(free))
         overlapping += int(np.sum(area > 1e-9))
-    assert apart > 3000
-    assert overlapping > 100
+    assert apart > 2000
+    assert overlapping > 70
 
 
 def test_the_whole_rigid_wheel_meets_no_tooth_that_the_two_neighbours_do_not_meet() -> None:
     # all teeth at once, in shapely only, against the verdict from one tooth and two neighbours
     verdicts = []
-    for stage in random_stages(24, seed=2):
+    for stage in random_stages(14, seed=2):
         wheel = rigid_teeth(stage, np.arange(stage.rigid.teeth, dtype=float))
         tree = shapely.STRtree(shapely.polygons(1e3 * wheel))
         crossing, nearest = False, np.inf
@@ -104,7 +104,7 @@ def test_the_whole_rigid_wheel_meets_no_tooth_that_the_two_neighbours_do_not_mee
             assert result.minimum > -2.0 * 1.1 * M * stage.flexible.pitch_angle / 16.0
         else:
             assert nearest >= 1e3 * result.minimum - 1e-9
-    assert 4 < sum(verdicts) < 20
+    assert 3 < sum(verdicts) < 11
 
 
 def test_a_sweep_and_the_full_outlines_give_one_verdict() -> None:
@@ -115,9 +115,9 @@ def test_a_sweep_and_the_full_outlines_give_one_verdict() -> None:
     for one, back in ((gear("A").stages()[0], 0.01), (gear("A").stages()[1], 0.04)):
         task = hm.DesignTask.of(one, least_tip_thickness=0.0)
         assert 1e3 * task.backlash == pytest.approx(back, abs=1e-9)
-        alpha, height, clearance, size = (rng.uniform(*limits, (80, 4)) * [np.pi / 180.0, task.module, task.module, task.module]).T
+        alpha, height, clearance, size = (rng.uniform(*limits, (40, 4)) * [np.pi / 180.0, task.module, task.module, task.module]).T
         points = task.evaluate(alpha, height, clearance, size)
-        for k in range(80):
+        for k in range(40):
             try:
                 stage = task.stage(profile_angle=alpha[k], height=height[k], clearance=clearance[k], amplitude=size[k])
             except ParameterError:
@@ -131,7 +131,7 @@ def test_a_sweep_and_the_full_outlines_give_one_verdict() -> None:
             if not full.interferes:
                 # separating axes give the distance or, corner to corner, less
                 assert points.flank_gap[k] <= full.flank_clearance + between
-    assert min(same.values()) > 20
+    assert min(same.values()) > 10
 
 
 def test_the_lost_motion_is_the_turn_between_contacts_on_both_sides() -> None:
