@@ -9,7 +9,7 @@ A  |i| = 50 exactly: 202/204 with m = 0.3 mm, 202/200 with m = 0.28 mm, w0 = 0.3
 C  one module of 0.3 mm: 200/202 and 190/188, i = -48.205, w0 = 0.30 mm
 
 Addendum 0.8 m, clearance 0.2 m.  Profile angle 30 degrees and the backlashes are ours, chosen with
-``hdrive-mbs teeth design``: of set A stage II needs 35 um because w0 is 0.02 mm larger than its
+``hdrive-mbs teeth design``: of set A stage II needs 30 um because w0 is 0.02 mm larger than its
 module, so that its teeth go 0.02 mm deeper than their reference circles.
 """
 

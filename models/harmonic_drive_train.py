@@ -28,9 +28,7 @@ def catalogue() -> hm.PiecewiseLinearStiffness:
 
 def motor() -> hm.AsynchronousMotor:
     """0.55 kW, 4 poles, 1410 rpm at 50 Hz, breakdown ratio 2.4."""
-    return hm.AsynchronousMotor(
-        rated_power=550.0, rated_speed=hm.rpm(1410.0), pole_pairs=2.0, line_frequency=50.0, breakdown_ratio=2.4
-    )
+    return hm.AsynchronousMotor(rated_power=550.0, rated_speed=hm.rpm(1410.0), pole_pairs=2.0, line_frequency=50.0, breakdown_ratio=2.4)
 
 
 def load_above_gap() -> hm.SineTorque:

@@ -42,7 +42,7 @@ class Method:
     run: Callable[[float], Run]
 
 
-TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-9, 1e-10)
+TOLERANCES = (1e-4, 1e-6, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9, 3e-10, 1e-10)
 STEPS = (4e-5, 2e-5, 1e-5, 5e-6, 2.5e-6)
 
 
@@ -103,7 +103,7 @@ def _scipy(kind: str, right: Callable[..., Any], duration: float) -> list[Method
     return [
         Method(f"scipy LSODA (solve_ivp), {kind}", TOLERANCES, ivp("LSODA")),
         Method(f"scipy LSODA (odeint), {kind}", TOLERANCES, lambda tolerance: _timed(lambda: old(tolerance))),
-        Method(f"scipy Radau, {kind}", TOLERANCES[:4], ivp("Radau")),
+        Method(f"scipy Radau, {kind}", TOLERANCES[:5], ivp("Radau")),
     ]
 
 

@@ -106,17 +106,17 @@ def _method(method: Method, seconds: dict[Key, list[float]], errors: dict[Key, f
 
 
 def time_at(target: float, errors: Sequence[float], seconds: Sequence[float]) -> float:
-    """Seconds for an error of at most the target: log-log interpolated; NaN where the ladder does not reach it.
+    """Seconds for an error of the target: a straight line through log(seconds) over log(error), least squares.
 
-    Between the fastest run that is good enough and the best of the faster ones that are not.
+    Through the runs whose error is within a factor of 100 of the target: where a step falls beside a corner of the
+    law is chance, and so one run's error is uncertain by a factor of 3 or so.  NaN where no run is as good as
+    the target, the fastest of them where none is worse.
     """
-    good = [(s, e) for s, e in zip(seconds, errors, strict=True) if e <= target and s > 0.0]
+    near = [(e, s) for e, s in zip(errors, seconds, strict=True) if target / 100.0 <= e <= 100.0 * target and s > 0.0]
+    good = [s for e, s in zip(errors, seconds, strict=True) if e <= target and s > 0.0]
     if not good:
         return math.nan
-    fast, fine = min(good)
-    worse = [(s, e) for s, e in zip(seconds, errors, strict=True) if target < e < math.inf and 0.0 < s < fast]
-    if not worse or fine <= 0.0:
-        return fast
-    slow, coarse = min(worse, key=lambda item: item[1])
-    share = math.log(coarse / target) / math.log(coarse / fine)
-    return slow * (fast / slow) ** share
+    if not any(e <= target for e, _ in near) or not any(e > target for e, _ in near):
+        return min(good)
+    _, offset = np.polyfit(np.log([e / target for e, _ in near]), np.log([s for _, s in near]), 1)
+    return float(np.exp(offset))

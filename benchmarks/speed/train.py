@@ -19,7 +19,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, judge the targets, and write the results; returns 0 when it ran, whatever the verdicts."""
     parser = argparse.ArgumentParser(description="Error against run time for the harmonic-drive train.")
     parser.add_argument("--quick", action="store_true", help="smoke test: 10 ms simulated, two settings each; times mean nothing")
-    parser.add_argument("--repeats", type=int, default=7, help="interleaved repeats of each run (default 7)")
+    parser.add_argument("--repeats", type=int, default=5, help="interleaved repeats of each run (default 5)")
     parser.add_argument("--out", type=Path, help="folder for the results; default: beside the command, none with --quick")
     options = parser.parse_args(arguments)
     if options.repeats < 1:

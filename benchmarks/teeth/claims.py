@@ -49,7 +49,7 @@ def _centre() -> Claim:
         holds &= bool(np.ptp(rate) > 0.01) and int(np.sum(np.diff(np.sign(rate)) != 0)) == 2
         parts.append(
             f"{stage.name}: {np.min(rate):+.4f} to {np.max(rate):+.4f} rad per rad of the generator, "
-            f"centre {1e3 * near:.1f} mm and more away"
+            f"centre {1e3 * near:.1f} mm and more from O2"
         )
     return Claim(
         where="conclusion",

@@ -59,9 +59,10 @@ def report(numbers: Mapping[str, Any], claims: Sequence[Claim]) -> str:
             ],
         ),
         "## Against shapely",
-        f"The same {shapely['positions']} pairs of outlines: {shapely['ours']:.3f} s with our arrays, {shapely['shapely']:.3f} s with shapely "
-        f"(distance and intersection); largest difference of a distance {shapely['largest_difference']:.1e} m. A design at the 61 angles of the "
-        f"sweep takes shapely {1e3 * each['seconds_per_design']:.2f} ms (placing the teeth included), the sweep {1e3 / first['per_second']:.2f} ms.",
+        f"The same {shapely['positions']} pairs of outlines: {shapely['ours']:.3f} s with our arrays, {shapely['shapely']:.3f} s with "
+        f"shapely (distance and intersection); largest difference of a distance {shapely['largest_difference']:.1e} m. A design at the 61 "
+        f"angles of the sweep takes shapely {1e3 * each['seconds_per_design']:.2f} ms (placing the teeth included), the sweep "
+        f"{1e3 / first['per_second']:.2f} ms.",
         "## The paper's equations, corrected, against the exact motion",
         table(
             ("set", "stage", "up to 90 deg [um]", "up to 180 deg [um]"),

@@ -18,7 +18,7 @@ from exudyn import itemInterface as item  # noqa: N813
 
 from hdrive_mbs.engine.guard import check_connector, check_coupling
 from hdrive_mbs.engine.records import CoupledRecord, ScalarRecord, make_record
-from hdrive_mbs.engine.symbolic import SYMBOLIC_VECTOR_LIMIT, connector_function, generic_function
+from hdrive_mbs.engine.symbolic import LARGEST_LAW, SYMBOLIC_VECTOR_LIMIT, connector_function, generic_function, written_out
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Expression, variables
 from hdrive_mbs.expression.python_code import scalar_function
@@ -144,7 +144,7 @@ class _Builder:
                     raise
 
             return law, "python"
-        if self.python:
+        if self.python or self._too_large(record.name, record.expression):
             compiled = scalar_function([record.expression], ["t", "x", "v"])
             return (lambda mbs, t, i, x, v, *_: compiled(t, x, v)[0]), "python"
         function = connector_function(self.mbs, kind, record.expression)
@@ -159,7 +159,7 @@ class _Builder:
         if not record.targets or (record.outputs is not None and not outputs):
             self.lowered.append(Lowered(record.name, "native"))  # zero, or on prescribed motions only
             return
-        if record.outputs is None and record.targets:
+        if record.outputs is None:
             self._warn(record.name, record.reason)
             self._add_plain(record)
             return
@@ -167,11 +167,9 @@ class _Builder:
         how = "symbolic"
         for group in groups:
             part = {name: outputs[name] for name in group}
-            if self._size(part) > SYMBOLIC_VECTOR_LIMIT or self.python:
-                how = "python"
-                if not self.python:
-                    self._warn(record.name, f"it couples {self._size(part)} coordinates, more than {SYMBOLIC_VECTOR_LIMIT}")
-            self._add_generic(record, part, how)
+            mode = "python" if self.python or self._is_wide(record.name, part) or self._too_large(record.name, *part.values()) else "symbolic"
+            self._add_generic(record, part, mode)
+            how = "python" if mode == "python" else how
         self.lowered.append(Lowered(record.name, how))
 
     def _names(self, outputs: Mapping[str, Expression]) -> tuple[str, ...]:
@@ -242,6 +240,18 @@ class _Builder:
                 forceUserFunction=function,
             )
         )
+
+    def _is_wide(self, name: str, outputs: Mapping[str, Expression]) -> bool:
+        size = self._size(outputs)
+        if size > SYMBOLIC_VECTOR_LIMIT:
+            self._warn(name, f"it couples {size} coordinates, more than {SYMBOLIC_VECTOR_LIMIT}")
+        return size > SYMBOLIC_VECTOR_LIMIT
+
+    def _too_large(self, name: str, *expressions: Expression) -> bool:
+        size = max(map(written_out, expressions))
+        if size > LARGEST_LAW:
+            self._warn(name, f"its shared parts written out make {size:.2g} operations, more than {LARGEST_LAW}")
+        return size > LARGEST_LAW
 
     def _note(self, name: str, t: float, error: Exception) -> None:
         if not self.failures:

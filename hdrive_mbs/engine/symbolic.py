@@ -30,6 +30,18 @@ _UNARY = {
 }  # fmt: skip
 
 
+LARGEST_LAW = 20_000
+"""Operations up to which a law is lowered; above it a compiled Python callback with shared parts is faster."""
+
+
+def written_out(expression: Expression) -> int:
+    """Number of operations with every shared part written out, which is how exudyn evaluates."""
+    sizes: dict[int, int] = {}
+    for node in in_order(expression):
+        sizes[id(node)] = 1 + sum(sizes[id(item)] for item in node.arguments)
+    return sizes[id(expression)]
+
+
 def emit(expression: Expression, values: dict[str, Any]) -> Any:
     """The expression over exudyn.symbolic reals (recording must be on)."""
     known: dict[int, Any] = {}

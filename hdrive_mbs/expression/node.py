@@ -116,22 +116,22 @@ class Expression:
         return make("not", make("eq", self, as_node(other)))
 
     def __and__(self, other: Value) -> Expression:
-        return make("and", truth(self), truth(as_node(other)))
+        return make("and", logical(self), logical(as_node(other)))
 
     __rand__ = __and__
 
     def __or__(self, other: Value) -> Expression:
-        return make("or", truth(self), truth(as_node(other)))
+        return make("or", logical(self), logical(as_node(other)))
 
     __ror__ = __or__
 
     def __xor__(self, other: Value) -> Expression:
-        return make("not", make("eq", truth(self), truth(as_node(other))))
+        return make("not", make("eq", logical(self), logical(as_node(other))))
 
     __rxor__ = __xor__
 
     def __invert__(self) -> Expression:
-        return make("not", self)
+        return make("not", logical(self))
 
     # -- numpy protocols ------------------------------------------------------------------------
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **kwargs: Any) -> Any:
@@ -217,9 +217,22 @@ LOGICAL = frozenset(("lt", "le", "eq", "and", "or", "not"))
 """Operations whose value is 0 or 1."""
 
 
+def _is_logical(a: Expression) -> bool:
+    if a.operation == "where":
+        return _is_logical(a.arguments[1]) and _is_logical(a.arguments[2])
+    return a.operation in LOGICAL or is_constant(a, 0.0) or is_constant(a, 1.0)
+
+
+def logical(a: Expression) -> Expression:
+    """The node, which must be a comparison or a combination of some (numpy's & works on the bits of anything else)."""
+    if not _is_logical(a):
+        raise TraceError("the law uses &, |, ^ or ~ on a number; they combine comparisons (np.logical_and and its like take numbers)")
+    return a
+
+
 def truth(a: Expression) -> Expression:
-    """1 where the node is not 0, else 0: the node itself when it is a comparison."""
-    return a if a.operation in LOGICAL else make("not", make("not", a))
+    """1 where the node is not 0, else 0."""
+    return a if _is_logical(a) else make("not", make("not", a))
 
 
 def add(a: Expression, b: Expression) -> Expression:

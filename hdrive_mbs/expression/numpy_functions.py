@@ -23,6 +23,7 @@ from hdrive_mbs.expression.node import (
     multiply,
     negate,
     power,
+    truth,
 )
 from hdrive_mbs.expression.pieces import lines_between
 
@@ -100,9 +101,9 @@ UFUNCS |= {
     **dict.fromkeys(("rad2deg", "degrees"), lambda a: a * (180 / math.pi)),
     "less": lambda a, b: a < b, "less_equal": lambda a, b: a <= b, "greater": lambda a, b: a > b,
     "greater_equal": lambda a, b: a >= b, "equal": lambda a, b: a == b, "not_equal": lambda a, b: a != b,
-    "logical_and": lambda a, b: a & b, "logical_or": lambda a, b: a | b,
+    "logical_and": lambda a, b: truth(a) & truth(b), "logical_or": lambda a, b: truth(a) | truth(b),
     "bitwise_and": lambda a, b: a & b, "bitwise_or": lambda a, b: a | b, "invert": lambda a: ~a,
-    **dict.fromkeys(("logical_xor", "bitwise_xor"), lambda a, b: a ^ b),
+    "logical_xor": lambda a, b: truth(a) ^ truth(b), "bitwise_xor": lambda a, b: a ^ b,
     "heaviside": lambda a, b: choose(a < 0.0, 0.0, choose(a > 0.0, 1.0, b)),
     "copysign": lambda a, b: choose(b < 0.0, -make("abs", a), make("abs", a)),
 }  # fmt: skip

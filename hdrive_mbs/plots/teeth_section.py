@@ -34,14 +34,15 @@ def plot_section(result: WaveGear, ax: Axes | None = None, *, phase: float = 0.0
         whole.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
         figure.suptitle(f"{type(result).__name__}, ratio {number(result.ratio)}", x=0.01, ha="left")
         radius = 1e3 * result.stages()[0].fibre_radius
-        reach = 1e3 * max(max(abs(w.tip_radius - s.fibre_radius) for w in (s.flexible, s.rigid)) for s in result.stages())
+        radii = [r for stage in result.stages() for wheel in (stage.flexible, stage.rigid) for r in (wheel.tip_radius, wheel.root_radius)]
+        reach = max(abs(1e3 * r - radius) for r in radii)
         views = {
             "on the major axis": (0.0, radius, figure.add_subplot(grid[0, 1])),
             "on the minor axis": (radius, 0.0, figure.add_subplot(grid[1, 1])),
         }
         for name, (x, y, close) in views.items():
             _draw(close, result, phase)
-            half = 1.35 * reach
+            half = 1.1 * reach
             close.set_xlim(x - half, x + half)
             close.set_ylim(y - half, y + half)
             close.set_title(name)

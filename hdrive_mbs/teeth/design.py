@@ -227,7 +227,9 @@ class DesignTask(Described):
         own = flanks(flexible_tip, flexible_root, r_f, thickness, alpha)
         other = flanks(rigid_tip, rigid_root, r_r, thickness, alpha + d * np.pi / self.rigid_teeth)
         shape_at = self.deformation.radial(np.array([self._engagement, self._start])) / self.deformation.on_major_axis
-        reach, withdrawal = d * shape_at[0] * w0, -d * shape_at[1] * w0
+        unit = UnitFibre.of(self.deformation, self._angles())
+        contraction = unit.contraction * w0**2 / self.fibre_radius
+        reach, withdrawal = d * (shape_at[0] * w0 + contraction), -d * (shape_at[1] * w0 + contraction)
         tip_thickness = 2.0 * np.minimum(own[:, 1, 0], other[:, 1, 0])
         widest = np.maximum(
             self.flexible_teeth * np.arctan2(own[:, 0, 0], own[:, 0, 1]), self.rigid_teeth * np.arctan2(other[:, 0, 0], other[:, 0, 1])
@@ -263,16 +265,13 @@ class DesignTask(Described):
                 flexible_flank=own[real],
                 rigid_flank=other[real],
             )
-            gap[real], place[real], share[real] = smallest_gaps(
-                arrays, UnitFibre.of(self.deformation, self._angles()), self._start, self.least_flank_gap
-            )
-        half = np.abs(place - self._start + self._engagement)
-        span = np.abs(self._start - self._engagement)
-        late = np.abs(np.mod(half + span, 2.0 * span) - span)  # angle from the engagement axis
+            gap[real], place[real], share[real] = smallest_gaps(arrays, unit, self._start, self.least_flank_gap)
+        span = np.pi / self.deformation.waves
+        off_axis = np.abs(np.mod(place, 2.0 * span) - span)  # angle from the engagement axis, which is at phi = span
         meshing = np.arccos(np.clip(1.0 - np.maximum(depth, 0.0) / np.maximum(w0, 1e-12), -1.0, 1.0)) / self.deformation.waves
         interfering = (verdict == 0) & (gap < self.least_flank_gap)
-        verdict[interfering & (late > 0.5 * meshing)] = 8
-        verdict[interfering & ~(late > 0.5 * meshing)] = 9
+        verdict[interfering & (off_axis > 0.5 * meshing)] = 8
+        verdict[interfering & ~(off_axis > 0.5 * meshing)] = 9
         return DesignPoints(
             profile_angle=alpha,
             height=h,

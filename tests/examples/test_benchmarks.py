@@ -96,17 +96,17 @@ def test_every_method_of_the_speed_benchmark_solves_the_same_train(speed: tuple[
         assert fine < 80.0 * 0.08**2 / 12.0, name
 
 
-def test_time_at_an_error_is_interpolated_on_the_log_log_curve() -> None:
-    # error ~ 1/time^2 through (1 s, 1e-4) and (100 s, 1e-8): 1e-6 after 10 s
-    assert time_at(1e-6, [1e-4, 1e-8], [1.0, 100.0]) == pytest.approx(10.0, rel=1e-12)
+def test_time_at_an_error_is_read_from_the_log_log_line() -> None:
+    # error = 1e-4 / time^2 in all three runs: 1e-6 after 10 s
+    assert time_at(1e-6, [1e-4 / 4.0, 1e-4 / 64.0, 1e-4 / 2500.0], [2.0, 8.0, 50.0]) == pytest.approx(10.0, rel=1e-12)
 
 
 def test_time_at_an_error_that_no_run_reaches_is_not_a_number() -> None:
     assert math.isnan(time_at(1e-6, [1e-4, 2e-6], [1.0, 2.0]))
 
 
-def test_time_at_an_error_ignores_runs_that_are_slower_and_worse() -> None:
-    assert time_at(1e-6, [1e-7, 1e-3], [1.0, 5.0]) == 1.0
+def test_time_at_an_error_is_that_of_the_fastest_run_where_none_near_it_is_worse() -> None:
+    assert time_at(1e-6, [1e-7, 2e-8, 1e-3], [1.0, 2.0, 0.1]) == 1.0
 
 
 # -- stiffness laws ----------------------------------------------------------------------------------

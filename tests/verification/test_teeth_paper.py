@@ -339,3 +339,25 @@ def test_conclusion_the_figures_choose_height_clearance_and_w0_but_not_the_profi
     # height, clearance and w0 can be read from P: its largest y leaves the clearance to N
     top = np.max(hm.tooth_motion(flat, np.linspace(0, np.pi, 181), exact=False).P[:, 1])
     assert 1e3 * (rigid_tooth(flat)[1][1] - top) == pytest.approx(0.06, abs=0.005)
+
+
+def test_a_three_wave_generator_has_three_zones_and_a_pitch_per_wave() -> None:
+    # difference of 3 teeth: reference circles touch at w0 = 3 m/2
+    one = hm.HarmonicGear.standard(
+        flexspline_teeth=300,
+        circular_spline_teeth=303,
+        module=hm.mm(0.2),
+        profile_angle=hm.degrees(28.0),
+        addendum=hm.mm(0.15),
+        clearance=hm.mm(0.05),
+        backlash=hm.mm(0.02),
+        fibre_radius=hm.mm(29.3),
+        deformation=hm.CosineDeformation(amplitude=hm.mm(0.29), number_of_waves=3),
+    )
+    assert one.ratio == pytest.approx(-100.0, rel=1e-12)
+    np.testing.assert_allclose(np.degrees([zone.centre for zone in hm.zones(one)]), [0.0, 120.0, 240.0], atol=1e-3)
+    (stage,) = one.stages()
+    motion = hm.tooth_motion(stage, [0.0, 2.0 * np.pi / 3.0])
+    angle = np.arctan2(motion.P[:, 0], motion.P[:, 1] + stage.fibre_radius)
+    np.testing.assert_allclose(angle, [0.0, -stage.rigid.pitch_angle], rtol=0.0, atol=1e-12)
+    assert not one.interferes
