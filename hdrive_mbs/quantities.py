@@ -118,7 +118,9 @@ class FreeParameter:
 
     def __str__(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
-        return f"{self.path} = {self.value:.6g}{unit}  [{self.low:g}, {self.high:g}]  {self.quantity.doc}"
+        left = "(" if self.low in (-math.inf, self.quantity.above) else "["
+        right = ")" if self.high == math.inf else "]"
+        return f"{self.path} = {self.value:.6g}{unit}  {left}{self.low:g}, {self.high:g}{right}  {self.quantity.doc}"
 
 
 def snake_case(name: str) -> str:
@@ -126,11 +128,23 @@ def snake_case(name: str) -> str:
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
 
 
+FIELDS = "Fields, given by name:"
+"""Heads the list of fields in a docstring."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Described:
     """Base of all immutable data: checks its quantities, compares by value, copies with changes."""
 
     _kind: ClassVar[str] = "object"
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Add the fields with unit, range and meaning to the docstring, where ``help`` shows them."""
+        super().__init_subclass__(**options)
+        own = {name: value for name, value in vars(cls).items() if isinstance(value, dataclasses.Field)}
+        lines = [_field_line(name, field) for name, field in (getattr(cls, "__dataclass_fields__", {}) | own).items() if field.metadata]
+        if cls.__doc__ and lines:
+            cls.__doc__ = "\n".join([inspect.cleandoc(cls.__doc__), "", FIELDS, *lines])
 
     def __new__(cls, *values: Any, **fields: Any) -> Self:
         known = [field.name for field in dataclasses.fields(cls) if field.init]
@@ -217,6 +231,18 @@ class Described:
 
     def __str__(self) -> str:
         return self.describe()
+
+
+def _field_line(name: str, field: dataclasses.Field[Any]) -> str:
+    quantity: Quantity | None = field.metadata.get("quantity")
+    words = [quantity.doc if quantity is not None else field.metadata.get("doc", "")]
+    if quantity is not None:
+        bounds = (("above", quantity.above), ("at least", quantity.low), ("at most", quantity.high))
+        words += [f"{word} {value:g}" for word, value in bounds if value is not None]
+    if field.default is not dataclasses.MISSING and field.default is not None:
+        words.append(f"default {_readable(field.default, None)}")
+    unit = "" if quantity is None else f" [{quantity.unit}]"
+    return f"    {name}{unit} : {', '.join(words)}"
 
 
 def _as_float(where: str, value: Any, unit: str) -> float:

@@ -10,7 +10,7 @@ from typing import Any
 
 from hdrive_mbs.components.component import Component
 from hdrive_mbs.effects.effect import Effect
-from hdrive_mbs.errors import LawError, PlaceError, SceneError, unknown_place
+from hdrive_mbs.errors import HdriveError, LawError, PlaceError, SceneError, unknown_place
 from hdrive_mbs.network.claims import check_claims
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.quantities import FreeParameter, snake_case
@@ -111,7 +111,15 @@ class Scene:
                 else:
                     piece.append(place)
             chains.append(piece)
-        return replace(self, parts=parts, connections=[chain for chain in chains if len(chain) > 1])
+        changed = replace(self, parts=parts, connections=[chain for chain in chains if len(chain) > 1])
+        for placed in changed.effects:
+            try:
+                changed._check_place(placed.effect, placed.at)
+            except PlaceError as error:
+                raise PlaceError(
+                    f"Without {name!r} the effect {placed.name!r} at {placed.at!r} has no place; remove it first. {error}"
+                ) from None
+        return changed
 
     def replacing(self, changes: Mapping[str, Any] | None = None, **parts: Any) -> Scene:
         """A copy with values, laws or whole parts replaced by path.
@@ -195,8 +203,13 @@ def describe(scene: Scene) -> str:
     if scene.effects:
         lines.append("  effects")
         lines += [f"    {placed.name} at {placed.at}: {placed.effect.describe()}" for placed in scene.effects]
+    try:
+        bodies = scene.network().bodies
+    except HdriveError as error:
+        return "\n".join([*lines, f"  it cannot be solved: {error}"])
+    width = max(len(body.name) for body in bodies)
     lines.append("  turns per turn of the motor")
-    lines += [f"    {body.name:<{width}}  {body.ratio:+.6g}" for body in scene.network().bodies]
+    lines += [f"    {body.name:<{width}}  {body.ratio:+.6g}" for body in bodies]
     return "\n".join(lines)
 
 

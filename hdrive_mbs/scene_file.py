@@ -17,7 +17,7 @@ from typing import Any
 from hdrive_mbs import components, effects, flexsplines, loads, motors, teeth
 from hdrive_mbs.components.component import Component
 from hdrive_mbs.effects.effect import Effect
-from hdrive_mbs.errors import FileFormatError, HdriveError, UnitError, unknown_place
+from hdrive_mbs.errors import FileFormatError, HdriveError, PlaceError, UnitError
 from hdrive_mbs.quantities import Described, Quantity
 from hdrive_mbs.scene import PlacedEffect, Scene
 from hdrive_mbs.units import factor, to_si
@@ -163,7 +163,7 @@ def all_types() -> dict[str, type[Described]]:
 
 def _known_types(extra: Iterable[type[Described]]) -> dict[str, type[Described]]:
     for package in (components, effects, flexsplines, loads, motors, teeth):
-        for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             importlib.import_module(module.name)
     found: dict[str, type[Described]] = {}
     stack: list[type[Described]] = [Described]
@@ -193,7 +193,10 @@ def _build(entry: Any, where: str, bases: tuple[type[Described], ...], known: Ma
     name = data.pop("type", None)
     kind = kinds.get(name) if isinstance(name, str) else None
     if kind is None:
-        raise unknown_place("type", str(name), sorted(kinds), f"{where}: this entry")
+        raise PlaceError(
+            f"No type {str(name)!r}. {where}: it can be {', '.join(sorted(kinds))}. For a class of your own import its module "
+            "first, or use load_scene(path, types=[...]); for the command line do so in build() of a .py file."
+        )
     fields = {field.name: field for field in dataclasses.fields(kind)}
     values: dict[str, Any] = {}
     for key, value in data.items():

@@ -40,6 +40,13 @@ class TimeHistory:
     def __len__(self) -> int:
         return len(self.times)
 
+    def __repr__(self) -> str:
+        head = f"TimeHistory {self.name!r} [{self.unit}]: {len(self)} values"
+        if not len(self):
+            return head
+        span = f"{self.times[0]:.6g} s to {self.times[-1]:.6g} s"
+        return f"{head} from {span}, {np.min(self.values):.6g} to {np.max(self.values):.6g} {self.unit}"
+
     def at(self, times: npt.ArrayLike) -> FloatArray:
         """Values at other times by cubic Hermite interpolation.
 

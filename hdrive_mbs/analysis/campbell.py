@@ -10,7 +10,7 @@ import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
 from hdrive_mbs.analysis.modes import Modes, matching_damping, modes_at
-from hdrive_mbs.analysis.operating_point import operating_point, with_load
+from hdrive_mbs.analysis.operating_point import at_speed, operating_point, with_load
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.engine.assembly import assemble
 from hdrive_mbs.errors import ParameterError, unknown_place
@@ -94,7 +94,9 @@ def torsional_campbell(
     points: list[Modes] = []
     with progress_bar(f"{scene.name}: Campbell", len(grid), progress) as report:
         for k, speed in enumerate(grid):
-            points.append(modes_at(loaded, assembly, operating_point(loaded, motor_speed=float(speed))))
+            turning = at_speed(loaded, float(speed))  # another scene only where the motor's motion is prescribed
+            built = assembly if turning is loaded else assemble(turning.network())
+            points.append(modes_at(turning, built, operating_point(turning, motor_speed=float(speed))))
             if report is not None:
                 report(k + 1)
     frequencies, ratios = _track(points)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from hdrive_mbs.analysis.operating_point import OperatingPoint, operating_point, with_load
+from hdrive_mbs.analysis.operating_point import OperatingPoint, at_speed, operating_point, with_load
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.engine.assembly import Assembly, assemble
 from hdrive_mbs.engine.linearisation import LinearSystem, linearise
@@ -86,18 +86,21 @@ def modes(scene: Scene, *, torque: float | None = None, motor_speed: float | Non
     operating point exists.
     """
     point = operating_point(scene, motor_speed=motor_speed, torque=torque)
-    loaded = scene if torque is None else with_load(scene, torque)
+    loaded = at_speed(scene if torque is None else with_load(scene, torque), point.motor_speed)
     return modes_at(loaded, assemble(loaded.network()), point)
 
 
 def modes_at(scene: Scene, assembly: Assembly, point: OperatingPoint) -> Modes:
     """Modes of an assembled scene at a given state (build once, ask for many points)."""
-    system = linearise(assembly, angles=point.angles, speeds=point.speeds, states=point.states)
+    # differences across a corner would mix both sides: all twists a little larger
+    outwards = 1.0 + 1e-3 if point.at_corner else 1.0
+    angles = {name: outwards * angle for name, angle in point.angles.items()}
+    system = linearise(assembly, angles=angles, speeds=point.speeds, states=point.states)
     undamped, shapes, rigid, left = _undamped(system)
     senses = np.array([body.sense for body in scene.network().bodies], float)
     damped, ratio, damped_shapes, decay = _damped(system, left)
     notes = [f"{name} is inside its lost motion or backlash: stiffness 0 there" for name in point.in_gap]
-    notes += [f"{name} sits at a corner of its law: its stiffness differs to either side" for name in point.at_corner]
+    notes += [f"{name} sits at a corner of its law: the stiffness towards larger twist is taken" for name in point.at_corner]
     if len(undamped) + rigid < len(system.bodies):
         notes.append("statically unstable: a stiffness is negative there, and a motion grows")
     status = "; ".join(["complete", *notes])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -10,14 +11,23 @@ import numpy.typing as npt
 from scipy.optimize import brentq
 
 from hdrive_mbs.components.load import Load
+from hdrive_mbs.components.motor import Motor
 from hdrive_mbs.errors import AnalysisError, ParameterError, PlaceError
+from hdrive_mbs.expression import gradient
 from hdrive_mbs.loads.constant import ConstantTorque
-from hdrive_mbs.network.elements import Connection
+from hdrive_mbs.motors.ideal_speed import IdealSpeedMotor
+from hdrive_mbs.motors.profiles.constant import ConstantSpeed
+from hdrive_mbs.motors.profiles.profile import SpeedProfile
+from hdrive_mbs.network.elements import AppliedTorque, Connection
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
+
+
+SIZES = (0.05, -0.05, 1e-3, -1e-3)
+"""Twists [rad] from which Newton's method starts where the first guesses do not lead to balance."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +61,18 @@ def with_load(scene: Scene, torque: float) -> Scene:
     return scene.replacing({f"{loads[-1]}.torque": ConstantTorque(value=torque)})
 
 
+def at_speed(scene: Scene, motor_speed: float | None) -> Scene:
+    """The scene with its prescribed motor turning constantly: at motor_speed, else as it does at t = 0."""
+    ideal = {name: part.characteristic for name, part in scene.parts.items() if isinstance(part, Motor)}
+    motions = {name: motor.motion for name, motor in ideal.items() if isinstance(motor, IdealSpeedMotor)}
+    if len(motions) != 1:
+        return scene
+    ((name, motion),) = motions.items()
+    assert isinstance(motion, SpeedProfile)
+    speed = float(gradient(motion.angle)(np.float64(0.0))) if motor_speed is None else motor_speed
+    return scene.replacing({f"{name}.characteristic.motion": ConstantSpeed(value=speed)})
+
+
 def operating_point(scene: Scene, *, motor_speed: float | None = None, torque: float | None = None) -> OperatingPoint:
     """Solve for the twists (and states) at which nothing accelerates against its neighbour.
 
@@ -64,12 +86,34 @@ def operating_point(scene: Scene, *, motor_speed: float | None = None, torque: f
     """
     if torque is not None:
         scene = with_load(scene, torque)
-    network = scene.network()
-    if motor_speed is None:
-        motor_speed = _balanced_speed(network)
-    if not np.isfinite(motor_speed):
+    if motor_speed is not None and not np.isfinite(motor_speed):
         raise ParameterError(f"motor_speed = {motor_speed} rad/s: must be a finite number.")
-    return _balance(network, motor_speed)
+    network = at_speed(scene, motor_speed).network()
+    if motor_speed is None and network.motions_drive:
+        motor_speed = _prescribed_speed(network)
+    if motor_speed is not None:
+        return _balance(network, motor_speed)
+    guess = _balanced_speed(network)
+    if network.states and not network.motions_drive:
+        with contextlib.suppress(AnalysisError):
+            return _balance(network, guess, find_speed=True)
+    return _balance(network, guess)
+
+
+def _prescribed_speed(network: Network) -> float:
+    """Motor speed that belongs to the first prescribed motion at t = 0 (0 for one that the ideal train does not turn)."""
+    motion = next(motion for motion in network.motions if motion.name != "ground")
+    return float(motion.sense * motion.speed(np.float64(0.0)) / motion.ratio) if motion.ratio else 0.0
+
+
+def _check_prescribed(network: Network, speed: float) -> None:
+    for motion in network.motions:
+        given, wanted = float(motion.sense * motion.speed(np.float64(0.0))), motion.ratio * speed
+        if abs(given - wanted) > 1e-6 * max(1.0, abs(wanted)):
+            raise ParameterError(
+                f"motor_speed = {speed:g} rad/s would turn {motion.name!r} at {wanted:g} rad/s, but its motion is prescribed with "
+                f"{given:g} rad/s at t = 0. Leave motor_speed out, or change the motion."
+            )
 
 
 def _moment(network: Network, speed: float, angles: FloatArray, states: FloatArray) -> Moment:
@@ -82,7 +126,13 @@ def _moment(network: Network, speed: float, angles: FloatArray, states: FloatArr
     )
 
 
-def _balance(network: Network, speed: float) -> OperatingPoint:
+def _balance(network: Network, speed: float, *, find_speed: bool = False) -> OperatingPoint:
+    """Newton's method for angles and states at a speed; with find_speed for the speed too.
+
+    Then the reference body must balance as well, which takes the integral of a speed controller to
+    the torque that it holds.
+    """
+    _check_prescribed(network, speed)
     bodies, states = network.bodies, network.states
     n = len(bodies)
     # a train that can turn as a whole is held at its reference body
@@ -92,27 +142,30 @@ def _balance(network: Network, speed: float) -> OperatingPoint:
     free = [k for k in range(n) if anchored or k != held]
     start_states = np.array([state.initial for state in states])
 
-    def split(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    balanced = [*free, held] if find_speed and not anchored else free
+
+    def split(x: FloatArray) -> tuple[float, FloatArray, FloatArray]:
         angles = np.zeros(n)
         angles[free] = x[: len(free)]
-        return angles, x[len(free) :]
+        return (float(x[-1]), angles, x[len(free) : -1]) if find_speed else (speed, angles, x[len(free) :])
 
     def residual(x: FloatArray) -> FloatArray:
-        angles, values = split(x)
-        total = network.torques(_moment(network, speed, angles, values))
-        rows = [float(total[bodies[k].name]) for k in free] + [float(total[state.name]) for state in states]
+        at, angles, values = split(x)
+        total = network.torques(_moment(network, at, angles, values))
+        rows = [float(total[bodies[k].name]) for k in balanced] + [float(total[state.name]) for state in states]
         return np.array(rows)
 
     best: tuple[float, FloatArray] | None = None
-    for size in (0.0, 0.05, -0.05, 1e-3, -1e-3):
-        guess = np.concatenate([_stretched(network, free, size), start_states])
+    starts = [_stretched(network, free, 0.0), *_static_guess(network, free, speed), *(_stretched(network, free, size) for size in SIZES)]
+    for start in starts:
+        guess = np.concatenate([start, start_states, [speed] if find_speed else []])
         x, error = _newton(residual, guess)
         if best is None or error < best[0]:
             best = (error, x)
         if error < 1e-9:
             break
     assert best is not None
-    angles, values = split(best[1])
+    speed, angles, values = split(best[1])
     moment = _moment(network, speed, angles, values)
     torques = {c.name: float(c.value(moment)) for c in _connections(network)}
     scale = max([abs(v) for v in torques.values()] + [1e-3])
@@ -149,6 +202,37 @@ def _stretched(network: Network, free: list[int], size: float) -> FloatArray:
         return np.zeros(len(free))
     matrix = _factor_matrix(network, [network.bodies[k].name for k in free])
     return np.asarray(np.linalg.lstsq(matrix, np.full(len(connections), size), rcond=None)[0], float)
+
+
+def _static_guess(network: Network, free: list[int], speed: float) -> list[FloatArray]:
+    """Angles from equilibrium and the inverse of each law: torques first, then twists (empty where a law never gets there)."""
+    connections = _connections(network)
+    if not connections or not free:
+        return []
+    moment = _moment(network, speed, np.zeros(len(network.bodies)), np.array([state.initial for state in network.states]))
+    names = [network.bodies[k].name for k in free]
+    applied = dict.fromkeys(names, 0.0)
+    for element in network.elements:
+        if isinstance(element, AppliedTorque) and element.coordinate in applied:
+            applied[element.coordinate] += float(element.value(moment))
+    matrix = _factor_matrix(network, names)
+    torques = np.linalg.lstsq(matrix.T, np.array(list(applied.values())), rcond=None)[0]
+    twists = [_twist_of(connection, moment, float(torque)) for connection, torque in zip(connections, torques, strict=True)]
+    if any(twist is None for twist in twists):
+        return []
+    return [np.asarray(np.linalg.lstsq(matrix, np.array(twists, float), rcond=None)[0], float)]
+
+
+def _twist_of(connection: Connection, moment: Moment, torque: float) -> float | None:
+    """Twist at rest at which the connection carries the torque, outwards from zero; None within 1 rad."""
+    if torque == 0.0:
+        return 0.0
+    low, high = 0.0, float(np.copysign(1e-7, torque))
+    while abs(high) < 1.0:
+        if float(connection.torque(moment, high, 0.0)) * np.sign(torque) >= abs(torque):
+            return float(brentq(lambda x: float(connection.torque(moment, x, 0.0)) - torque, low, high, xtol=1e-15))
+        low, high = high, 1.5 * high
+    return None
 
 
 def _newton(function: Callable[[FloatArray], FloatArray], x: FloatArray, iterations: int = 60) -> tuple[FloatArray, float]:

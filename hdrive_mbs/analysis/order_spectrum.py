@@ -95,7 +95,8 @@ def order_spectrum(
     whole_revolutions : end the span at the last whole revolution, so that whole orders fall on lines
 
     A line of constant order is sharp however the speed changes; the amplitude shown is its mean over
-    the revolutions.  Something of constant frequency is smeared instead.  Raises AnalysisError when
+    the revolutions.  Something of constant frequency is smeared instead.  For a torque shorten the
+    solver's max_step to a tenth of the period looked for, see ``spectrum``.  Raises AnalysisError when
     the angle does not run in one direction over the span, or by less than one revolution.
     """
     history, scene = chosen_history(source, channel)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import functools
 import hashlib
 import io
 import json
@@ -28,6 +29,11 @@ FORMAT = "hdrive-mbs result 1"
 
 def versions() -> dict[str, str]:
     """Versions of what computes: this package, exudyn, numpy, scipy, Python."""
+    return dict(_versions())
+
+
+@functools.cache
+def _versions() -> Mapping[str, str]:
     found = {"python": platform.python_version()}
     for name in ("hdrive-mbs", "exudyn", "numpy", "scipy"):
         try:
@@ -51,6 +57,19 @@ class Result:
     status: str
     settings: Mapping[str, Any]
     versions: Mapping[str, str] = field(default_factory=versions)
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        if "__repr__" not in vars(cls):  # else dataclass makes one with all the numbers in it
+            cls.__repr__ = Result.__repr__  # type: ignore[method-assign]
+
+    def __repr__(self) -> str:
+        """Name, scene, status and a line on each field; the numbers themselves are in the fields."""
+        of = f" of {self.scene.name!r}" if self.scene is not None else ""
+        shown = [item.name for item in dataclasses.fields(self) if item.name not in ("scene", "status", "settings", "versions")]
+        width = max(map(len, shown), default=0)
+        lines = [f"  {name:<{width}}  {_in_short(getattr(self, name))}" for name in shown]
+        return "\n".join([f"{type(self).__name__}{of}: {self.status}", *lines])
 
     def columns(self) -> dict[str, np.ndarray]:
         """Equally long columns for CSV, headed ``name [unit]``."""
@@ -129,6 +148,28 @@ def load(path: str | os.PathLike[str]) -> Result:
         odd = sorted((needed - set(values)) | (set(values) - set(fields)))
         raise FileFormatError(f"{path}: the fields of a {kind.__name__} have changed with the version ({', '.join(odd)}).")
     return kind(scene=_unpacked_scene(document["scene"], path), **values)
+
+
+def _in_short(value: Any) -> str:
+    """A field in one line of at most about 100 characters."""
+    if isinstance(value, np.ndarray):
+        if value.size <= 6:
+            return " ".join(np.array2string(value, precision=6).split())
+        size = " x ".join(map(str, value.shape))
+        if np.iscomplexobj(value) or not np.issubdtype(value.dtype, np.number) or not np.any(np.isfinite(value)):
+            return f"{size} values"
+        finite = value[np.isfinite(value)]
+        return f"{size} values, {finite.min():.6g} to {finite.max():.6g}"
+    if isinstance(value, Mapping):
+        words = [f"{key} {item:.6g}" if isinstance(item, (float, np.floating)) else str(key) for key, item in value.items()]
+        return _cut(", ".join(words) or "none", len(words))
+    if isinstance(value, (tuple, list)):
+        return _cut(", ".join(f"{item:.6g}" if isinstance(item, float) else str(item) for item in value) or "none", len(value))
+    return f"{value:.6g}" if isinstance(value, (float, np.floating)) else str(value)
+
+
+def _cut(text: str, count: int) -> str:
+    return text if len(text) <= 90 else f"{text[:80].rpartition(', ')[0]}, ... ({count} in all)"
 
 
 def _unpacked_scene(document: dict[str, Any] | None, path: str | os.PathLike[str]) -> Scene | None:

@@ -94,7 +94,8 @@ def spectrum(
         shortest usual step of the solver
 
     The signal is put on even times by Hermite interpolation between the solver's own (order 4
-    where the channel's slope is known).  A sine whose frequency falls on a line shows its
+    where the channel's slope is known: angles, speeds, twists; a torque has none and reads low where a
+    period has few steps, so shorten max_step for it).  A sine whose frequency falls on a line shows its
     amplitude exactly; between two lines the Hann window shows up to 15 % less, which ``peaks``
     corrects.  A part that grows or changes frequency during the span shows its average only (see
     ``order_spectrum`` for a run-up).  Raises AnalysisError for a span of less than 4 samples.

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from hdrive_mbs.analysis.result import Result
+from hdrive_mbs.analysis.time_tables import for_tables
 from hdrive_mbs.engine.assembly import Assembly, assemble
 from hdrive_mbs.engine.simulation import RawRun, run
 from hdrive_mbs.engine.solvers import DormandPrince, Solver
@@ -88,7 +89,8 @@ def simulate(
     """Integrate a scene from t = 0.
 
     duration : s
-    solver : DormandPrince() by default
+    solver : DormandPrince() by default; its longest step is shortened where a table over time (TableTorque,
+        SpeedTable) has closer points.  For a short pulse in a function of your own set max_step yourself
     initial_speed : motor speed at t = 0 [rad/s]; every other place turns by its ideal ratio
     initial : values at t = 0 by channel name (``"load.angle"``, ``"motor.speed"``, a state), true sense
     sample_step : record no more often than this [s]; 0 records every step of the solver
@@ -109,13 +111,16 @@ def simulate(
     solver = solver if solver is not None else DormandPrince()
     if not isinstance(solver, Solver):
         raise ParameterError(f"solver = {solver!r}: must be a Solver, for instance DormandPrince() or RungeKutta4(step=1e-5).")
+    solver = for_tables(solver, scene, duration)
     network = scene.network()
     assembly = assemble(network, lowering=lowering)
     starts = initial_values(network, initial_speed, initial or {})
 
+    every = 0.0 if estimate_error else sample_step  # between thin samples the interpolation would err more than the solver
+
     def once(with_solver: Solver) -> RawRun:
         with progress_bar(f"{scene.name}: {duration:g} s", duration, progress) as report:
-            return run(assembly, duration=duration, solver=with_solver, **starts, sample_step=sample_step, progress=report, cancel=cancel)
+            return run(assembly, duration=duration, solver=with_solver, **starts, sample_step=every, progress=report, cancel=cancel)
 
     raw, error, used = once(solver), {}, solver
     if estimate_error and raw.status == "complete":
@@ -125,6 +130,7 @@ def simulate(
             divisor = 1.0 if solver.adaptive else 2.0**solver.order - 1.0
             error = {name: value / divisor for name, value in _difference(network, raw, finer).items()}
             raw = finer
+    raw = _thinned(raw, sample_step) if estimate_error else raw
     settings = {"duration": duration, "solver": used.describe(), "initial_speed": initial_speed, "sample_step": sample_step}
     return _response(scene, network, assembly, raw, settings | {"initial": dict(initial or {})}, error)
 
@@ -161,6 +167,23 @@ def initial_values(network: Network, speed: float, given: Mapping[str, float]) -
             known = [f"{body.name}.angle/.speed" for body in network.bodies] + list(states)
             raise unknown_place("initial value", name, known)
     return {"angles": angles, "speeds": speeds, "states": states}
+
+
+def _thinned(raw: RawRun, sample_step: float) -> RawRun:
+    """Samples no closer than sample_step [s], and the last one: what the engine keeps of a run."""
+    if sample_step == 0.0:
+        return raw
+    kept, due = [0], sample_step
+    for k, time in enumerate(raw.times[1:], start=1):
+        if time >= due * (1.0 - 1e-12):
+            kept.append(k)
+            due += sample_step * max(1.0, np.ceil((time - due) / sample_step))
+    kept = sorted({*kept, len(raw.times) - 1})
+
+    def pick(values: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+        return {name: value[kept] for name, value in values.items()}
+
+    return replace(raw, times=raw.times[kept], angles=pick(raw.angles), speeds=pick(raw.speeds), states=pick(raw.states))
 
 
 def run_moment(network: Network, raw: RawRun) -> Moment:

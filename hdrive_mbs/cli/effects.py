@@ -12,7 +12,7 @@ import typer
 from hdrive_mbs.cli.options import JsonFile
 from hdrive_mbs.cli.output import print_table, write_json
 from hdrive_mbs.cli.scene_source import effect_types, open_scene
-from hdrive_mbs.quantities import Quantity
+from hdrive_mbs.quantities import FIELDS, Quantity
 
 
 def effects(
@@ -43,7 +43,7 @@ def effects(
                 "effect": name,
                 "acts_on": kind.acts_on,
                 "signature": kind.signature,
-                "law": inspect.cleandoc(kind.__doc__ or ""),
+                "law": inspect.cleandoc(kind.__doc__ or "").partition(f"\n\n{FIELDS}")[0],
                 "parameters": fields,
                 "places": places.get(kind.acts_on, []),
             }

@@ -51,7 +51,7 @@ def modes(
         for k, frequency in enumerate(result.undamped):
             shape = ", ".join(f"{body} {result.shapes[i, k]:+.3f}" for i, body in enumerate(result.bodies))
             rows.append([str(k + 1), float(frequency), float(frequency / 6.283185307179586), shape])
-        print_table(f"{chosen.name}: undamped ({result.status})", ["mode", "[rad/s]", "[Hz]", "shape"], rows)
+        print_table(f"{chosen.name}: undamped ({result.status})", ["mode", "[rad/s]", "[Hz]", "shape: angles, true sense"], rows)
         damped = [[str(k + 1), float(w), float(z)] for k, (w, z) in enumerate(zip(result.damped, result.damping_ratio, strict=True))]
         print_table("damped", ["mode", "[rad/s]", "damping ratio"], damped)
         if len(result.decay_rates):

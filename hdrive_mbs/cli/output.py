@@ -12,6 +12,9 @@ import numpy as np
 
 from hdrive_mbs.writing import write_text
 
+NAME = 24
+"""A first column up to this width is never broken."""
+
 
 def write_json(target: str | None, document: Any) -> None:
     """Write to a file, or to stdout for ``-``; nothing for None.  NaN and infinity become null."""
@@ -45,8 +48,19 @@ def print_table(title: str, headers: Sequence[str], rows: Iterable[Sequence[obje
     from rich.table import Table
 
     table = Table(title=escape(title), title_justify="left")
+    rows = list(rows)
     for index, header in enumerate(headers):
-        table.add_column(escape(header), justify="left" if index == 0 else "right", overflow="fold")
+        numbers = index > 0 and all(_is_number(row[index]) for row in rows)
+        name = index == 0 and all(len(str(row[0])) <= NAME for row in rows)
+        table.add_column(escape(header), justify="right" if numbers else "left", overflow="fold", no_wrap=name)
     for row in rows:
         table.add_row(*[f"{item:.6g}" if isinstance(item, float) else escape(str(item)) for item in row])
     Console().print(table)
+
+
+def _is_number(item: object) -> bool:
+    try:
+        float(str(item) or "nan")
+    except ValueError:
+        return item in ("-", None)
+    return True

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib.util
 import inspect
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
@@ -44,6 +46,9 @@ def module_of(path: Path) -> ModuleType:
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
+    beside = str(path.resolve().parent)
+    if beside not in sys.path:
+        sys.path.insert(0, beside)  # as python itself does for a script: a scene may import what lies beside it
     spec.loader.exec_module(module)
     return module
 
@@ -93,7 +98,7 @@ def parse_effect(text: str) -> tuple[Effect, str]:
         raise FileFormatError(f"{text!r}: write TYPE@PLACE:field=value,field=value.")
     if name not in kinds:
         raise unknown_place("effect", name, kinds, "The library")
-    known: dict[str, Quantity | None] = {item: field.metadata.get("quantity") for item, field in kinds[name].__dataclass_fields__.items()}
+    known: dict[str, Quantity | None] = {field.name: field.metadata.get("quantity") for field in dataclasses.fields(kinds[name])}
     values: dict[str, Any] = {}
     for item in filter(None, fields.split(",")):
         key, equal, value = (part.strip() for part in item.partition("="))

@@ -31,6 +31,7 @@ def teeth(
     step: Annotated[float, typer.Option(help="Step of the generator angle [deg].")] = 10.0,
     to: Annotated[float, typer.Option(help="Last generator angle [deg].")] = 180.0,
     per_variable: Annotated[int, typer.Option(help="design: points per variable of the grid.")] = 10,
+    animation: Annotated[bool, typer.Option(help="With --out, write the animation meshing.gif too, some seconds.")] = True,
     out: OutFolder = None,
     json: JsonFile = None,
 ) -> None:
@@ -53,7 +54,7 @@ def teeth(
         return
     if not step > 0.0 or not to >= step:
         raise ParameterError(f"--step {step:g} --to {to:g}: the step must be greater than 0 deg and at most the last angle.")
-    _positions(gear, chosen, step, to, out, json)
+    _positions(gear, chosen, step, to, out, json, animation)
 
 
 def find_gear(path: Path, settings: tuple[str, ...] | list[str] = ()) -> WaveGear:
@@ -80,7 +81,9 @@ def find_gear(path: Path, settings: tuple[str, ...] | list[str] = ()) -> WaveGea
     return found
 
 
-def _positions(gear: WaveGear, stages: list[tuple[int, Stage]], step: float, to: float, out: Path | None, json: str | None) -> None:
+def _positions(
+    gear: WaveGear, stages: list[tuple[int, Stage]], step: float, to: float, out: Path | None, json: str | None, animation: bool
+) -> None:
     from hdrive_mbs.teeth.clearance import clearances
     from hdrive_mbs.teeth.motion import steps, tooth_motion
     from hdrive_mbs.teeth.zones import stage_zones
@@ -95,19 +98,19 @@ def _positions(gear: WaveGear, stages: list[tuple[int, Stage]], step: float, to:
             {
                 "stage": number,
                 "angle_deg": np.round(np.degrees(angles), 9),
-                "P": 1e3 * printed.P,
-                "R": 1e3 * printed.R,
-                "P_exact": 1e3 * exact.P,
-                "R_exact": 1e3 * exact.R,
-                "M": 1e3 * printed.M,
-                "N": 1e3 * printed.N,
+                "P": _millimetres(printed.P),
+                "R": _millimetres(printed.R),
+                "P_exact": _millimetres(exact.P),
+                "R_exact": _millimetres(exact.R),
+                "M": _millimetres(printed.M),
+                "N": _millimetres(printed.N),
                 "angular_velocity": exact.angular_velocity,
                 "min_clearance_mm": 1e3 * clear.minimum,
                 "min_clearance_angle_deg": float(np.degrees(clear.angles[clear.worst])),
                 "radial_clearance_mm": 1e3 * min(clear.radial_tip, clear.radial_root),
                 "interferes": clear.interferes,
                 "teeth_in_engagement": clear.teeth_in_engagement,
-                "zones_deg": [np.degrees([zone.begin, zone.end]) for zone in stage_zones(stage)],
+                "zones_from_major_axis_deg": sorted(np.degrees([zone.begin, zone.end]).tolist() for zone in stage_zones(stage)),
                 "lost_motion_arcmin": 60.0 * float(np.degrees(clear.lost_motion)),
             }
         )
@@ -123,7 +126,7 @@ def _positions(gear: WaveGear, stages: list[tuple[int, Stage]], step: float, to:
             ]
         )
     if out is not None:
-        _pictures(gear, stages, angles, out)
+        _pictures(gear, stages, angles, out, animation)
     write_json(json, {"ratio": gear.ratio, "explanation": gear.explain(), "lost_motion_rad": gear.lost_motion, "stages": entries})
     if json != "-":
         heads = ["stage", "teeth", "clash", "gap [um]", "bottom [um]", "in mesh", "lost [arcmin]"]
@@ -131,7 +134,7 @@ def _positions(gear: WaveGear, stages: list[tuple[int, Stage]], step: float, to:
         print(gear.explain())
 
 
-def _pictures(gear: WaveGear, stages: list[tuple[int, Stage]], angles: Any, out: Path) -> None:
+def _pictures(gear: WaveGear, stages: list[tuple[int, Stage]], angles: Any, out: Path, animation: bool) -> None:
     from hdrive_mbs.plots import animate, plot, save_figure
     from hdrive_mbs.teeth.clearance import clearances
     from hdrive_mbs.teeth.clearance_map import clearance_map
@@ -142,11 +145,12 @@ def _pictures(gear: WaveGear, stages: list[tuple[int, Stage]], angles: Any, out:
         save_figure(plot(tooth_motion(stage, angles)), out / f"positions_{number}")
         save_figure(plot(clearances(stage)), out / f"clearance_{number}")
         save_figure(plot(clearance_map(stage)), out / f"clearance_map_{number}")
-    animate(gear, out / "meshing.gif")
+    if animation:
+        animate(gear, out / "meshing.gif")
 
 
 def _design(stages: list[tuple[int, Stage]], per_variable: int, out: Path | None, json: str | None) -> None:
-    from hdrive_mbs.teeth.design import DesignTask
+    from hdrive_mbs.teeth.design import DesignTask, common_amplitude
 
     entries = []
     windows = []
@@ -176,10 +180,22 @@ def _design(stages: list[tuple[int, Stage]], per_variable: int, out: Path | None
             from hdrive_mbs.plots import plot, save_figure
 
             save_figure(plot(window), out / f"design_{number}")
-    write_json(json, {"stages": entries})
+    shared = common_amplitude(windows)
+    document: dict[str, Any] = {"stages": entries}
+    if len(stages) > 1:
+        document["common_amplitude_mm"] = None if shared is None else [1e3 * end for end in shared]
+    write_json(json, document)
     if json != "-":
         for (_, stage), window in zip(stages, windows):
             print(f"{stage.name}, {stage.flexible.teeth}/{stage.rigid.teeth} teeth: {window.explain()}")
+        if len(stages) > 1:
+            found = "there is no common w0" if shared is None else f"w0 from {1e3 * shared[0]:.4f} to {1e3 * shared[1]:.4f} mm suits all"
+            print(f"The stages share the flexspline: at the best points {found}.")
+
+
+def _millimetres(points: Any) -> Any:
+    """Lengths in mm to a femtometre, so that zeros are zeros."""
+    return np.round(1e3 * points, 12) + 0.0
 
 
 def _unit(name: str) -> str:

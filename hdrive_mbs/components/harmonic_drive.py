@@ -34,7 +34,7 @@ class HarmonicDrive(Component):
     """
 
     ratio: float = parameter("1", "u, absolute value of the ratio with the circular spline held", above=1.0)
-    stiffness: StiffnessLaw | Callable[[Value], Value] = option("law of the elastic torque M(twist)")
+    stiffness: StiffnessLaw | Callable[[Value], Value] = option("law of the elastic torque M(twist), or a function of the twist")
     damping: float = parameter("N m s/rad", "damping B_FS on the rate of twist", default=0.0, low=0.0)
     damping_in_gap: bool = option("whether B_FS acts inside the lost motion too (as (2)-(3) have it)", default=True)
     wave_generator_inertia: float = parameter("kg m^2", "J_WG", default=0.0, low=0.0)
@@ -53,6 +53,8 @@ class HarmonicDrive(Component):
         if self.output_sense not in ("opposite", "same"):
             raise ParameterError(f"HarmonicDrive.output_sense = {self.output_sense!r}: must be 'opposite' or 'same'.")
         if self.teeth is not None:
+            if not isinstance(self.teeth, WaveGear):
+                raise ParameterError(f"HarmonicDrive.teeth = {self.teeth!r}: must be a gear geometry, e.g. a HarmonicGear or None.")
             self._check_teeth(self.teeth)
 
     def _check_teeth(self, gear: WaveGear) -> None:

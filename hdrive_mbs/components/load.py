@@ -23,7 +23,7 @@ class Load(Component):
     """
 
     inertia: float = parameter("kg m^2", "inertia J_MR on its own axis", above=0.0)
-    torque: LoadLaw | Callable[..., Value] = option("load torque, positive when it resists forward rotation")
+    torque: LoadLaw | Callable[..., Value] = option("load law, or a function of (time) or (time, angle, speed); positive resists")
     viscous: float = parameter("N m s/rad", "viscous drag on the absolute speed", default=0.0, low=0.0)
 
     def check(self) -> None:

@@ -21,7 +21,9 @@ class Motor(Component):
     """
 
     inertia: float = parameter("kg m^2", "rotor inertia J_s", above=0.0)
-    characteristic: MotorCharacteristic | Callable[..., Value] = option("torque law: a characteristic or a function")
+    characteristic: MotorCharacteristic | Callable[..., Value] = option(
+        "torque law: a characteristic, or a function of (speed) or (time, speed)"
+    )
     viscous: float = parameter("N m s/rad", "viscous drag on the absolute speed", default=0.0, low=0.0)
 
     def check(self) -> None:

@@ -16,7 +16,7 @@ import exudyn as exu
 import numpy as np
 from exudyn import itemInterface as item  # noqa: N813
 
-from hdrive_mbs.engine.guard import check_connector, check_coupling
+from hdrive_mbs.engine.guard import check_connector, check_coupling, check_scalar
 from hdrive_mbs.engine.records import CoupledRecord, ScalarRecord, make_record
 from hdrive_mbs.engine.symbolic import LARGEST_LAW, SYMBOLIC_VECTOR_LIMIT, connector_function, generic_function, written_out
 from hdrive_mbs.errors import ParameterError
@@ -123,6 +123,8 @@ class _Builder:
         linear = record.linear()
         if linear is not None:
             stiffness, damping = linear
+            if self.guard:
+                check_scalar(record, lambda t, x, v: stiffness * x + damping * v)
             if linear != (0.0, 0.0):
                 self.mbs.AddObject(make(markerNumbers=markers, stiffness=stiffness, damping=damping, **geared))
             self.lowered.append(Lowered(record.name, "native"))
@@ -144,7 +146,7 @@ class _Builder:
                     raise
 
             return law, "python"
-        if self.python or self._too_large(record.name, record.expression):
+        if self.python or self._is_long(record.name, record.expression):
             compiled = scalar_function([record.expression], ["t", "x", "v"])
             return (lambda mbs, t, i, x, v, *_: compiled(t, x, v)[0]), "python"
         function = connector_function(self.mbs, kind, record.expression)
@@ -167,9 +169,9 @@ class _Builder:
         how = "symbolic"
         for group in groups:
             part = {name: outputs[name] for name in group}
-            mode = "python" if self.python or self._is_wide(record.name, part) or self._too_large(record.name, *part.values()) else "symbolic"
-            self._add_generic(record, part, mode)
-            how = "python" if mode == "python" else how
+            slow = self.python or self._is_wide(record.name, part) or self._is_long(record.name, *part.values())
+            self._add_generic(record, part, "python" if slow else "symbolic")
+            how = "python" if slow else how
         self.lowered.append(Lowered(record.name, how))
 
     def _names(self, outputs: Mapping[str, Expression]) -> tuple[str, ...]:
@@ -247,7 +249,7 @@ class _Builder:
             self._warn(name, f"it couples {size} coordinates, more than {SYMBOLIC_VECTOR_LIMIT}")
         return size > SYMBOLIC_VECTOR_LIMIT
 
-    def _too_large(self, name: str, *expressions: Expression) -> bool:
+    def _is_long(self, name: str, *expressions: Expression) -> bool:
         size = max(map(written_out, expressions))
         if size > LARGEST_LAW:
             self._warn(name, f"its shared parts written out make {size:.2g} operations, more than {LARGEST_LAW}")

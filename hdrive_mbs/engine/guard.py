@@ -7,7 +7,7 @@ meaning differs, a law that is not a pure function.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -60,14 +60,19 @@ def _computing(name: str) -> Iterator[None]:
 
 def check_connector(mbs: Any, function: Any, kind: str, record: ScalarRecord) -> None:
     """Raise LawError where the symbolic connector function differs from the plain law."""
+    extra = [0.0] * _EXTRA[kind]
+    check_scalar(record, lambda t, x, v: float(function.Evaluate(mbs, t, 0, x, v, *extra)))
+
+
+def check_scalar(record: ScalarRecord, lowered_law: Callable[[float, float, float], float]) -> None:
+    """Raise LawError where what the engine computes differs from the plain law."""
     rng = np.random.default_rng(20141007)
     times, x, v = np.abs(_magnitudes(rng, -3, 2)), _magnitudes(rng, -5, 2), _magnitudes(rng, -5, 3)
-    extra = [0.0] * _EXTRA[kind]
     with np.errstate(all="ignore"):
         for t, xi, vi in zip(times, x, v, strict=True):
             with _computing(record.name):
                 plain = float(record.plain(np.float64(t), np.float64(xi), np.float64(vi)))
-            lowered = float(function.Evaluate(mbs, float(t), 0, float(xi), float(vi), *extra))
+            lowered = lowered_law(float(t), float(xi), float(vi))
             if _differ(lowered, plain):
                 raise _refuse(record.name, f"t={t:.6g}, displacement={xi:.6g}, velocity={vi:.6g}", lowered, plain)
 

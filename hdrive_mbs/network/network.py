@@ -106,6 +106,11 @@ class Network:
         """Power that each connection or torque takes from the bodies [W], by element name."""
         return {element.name: element.power(moment) for element in self.elements if isinstance(element, (Connection, AppliedTorque))}
 
+    @property
+    def motions_drive(self) -> bool:
+        """Whether a place other than the ground has a prescribed motion."""
+        return any(motion.name != "ground" for motion in self.motions)
+
     def connection(self, name: str) -> Connection:
         """The connection of the given name (KeyError if there is none)."""
         for element in self.elements:

@@ -21,7 +21,7 @@ from hdrive_mbs.writing import write_whole
 SIDE = 3
 
 
-def animate(gear: WaveGear, path: str | os.PathLike[str], *, frames: int = 60, seconds: float = 4.0, dpi: int = 90) -> Path:
+def animate(gear: WaveGear, path: str | os.PathLike[str], *, frames: int = 40, seconds: float = 4.0, dpi: int = 90) -> Path:
     """Write a GIF of all stages over one wave, seen from the rigid wheel; it repeats without a jump.
 
     In one wave every flexible tooth moves on by one pitch.  The marked tooth draws the path of its tip.
@@ -29,7 +29,7 @@ def animate(gear: WaveGear, path: str | os.PathLike[str], *, frames: int = 60, s
     stages = gear.stages()
     pictures = []
     with house_look():
-        figure = new_figure(5.2 * len(stages), 3.6)
+        figure = new_figure(5.2 * len(stages), 2.8)
         figure.set_dpi(dpi)
         canvas = FigureCanvasAgg(figure)
         panels = [_Panel(ax, stage) for ax, stage in zip(np.atleast_1d(figure.subplots(1, len(stages))), stages)]

@@ -17,6 +17,8 @@ ANGLES = 720
 """Angles over a turn of the generator, every half degree: between two of them a smooth gap bends by w0 (2 dphi)^2/8, some nm."""
 FINER = 32
 """A step in which corners may clip is divided into so many: the radial motion in one is then below 2 w0 pi/(360 * 32), 0.2 um."""
+ROUNDING = 1e-13
+"""Distances [m] that differ by less are the same one."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,8 +56,8 @@ class Clearances:
 
     @property
     def worst(self) -> int:
-        """Index of the angle of the smallest distance."""
-        return int(np.argmin(self.gap))
+        """Index of the angle of the smallest distance: the first one of places that are alike in all waves but for rounding."""
+        return int(np.flatnonzero(self.gap <= np.min(self.gap) + ROUNDING)[0])
 
     @property
     def interferes(self) -> bool:
@@ -91,7 +93,8 @@ class Clearances:
     def lost_motion(self) -> float:
         """Turn [rad] of the flexible against the rigid wheel from contact one way to contact the other way, at least 0.
 
-        The tooth that has least play decides.  The fibre keeps its shape, the generator stands.
+        The tooth that has least play decides.  The fibre keeps its shape, the generator stands.  Leaves out
+        that the tooth is also moved along the deformed fibre: at most (w0/r)(1 + 2 tan alpha) of the play, about 2 %.
         """
         return max(0.0, float(np.min(self.ahead)) + float(np.min(self.behind)))
 
@@ -124,7 +127,7 @@ def clearances(stage: Stage, number: int = ANGLES) -> Clearances:
     phi = 2.0 * np.pi * np.arange(number) / number
     first = _measure(stage, phi)
     before = np.flatnonzero((first.depth > 0.0) != (np.roll(first.depth, -1) > 0.0))
-    worst = int(np.argmin(first.gap))
+    worst = first.worst
     split = np.unique(np.concatenate((before, [worst, (worst - 1) % number])))
     inner = np.arange(1, FINER) / FINER * 2.0 * np.pi / number
     return _measure(stage, np.sort(np.concatenate((phi, (phi[split][:, None] + inner).ravel()))))

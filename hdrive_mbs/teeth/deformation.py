@@ -15,6 +15,8 @@ from hdrive_mbs.quantities import Described
 FloatArray = npt.NDArray[np.float64]
 SAMPLES = 2048
 """Samples of w around the fibre; a law is known up to its 1023rd harmonic."""
+AXIS_TOLERANCE = 5.0
+"""Degrees that the highest place of the wave may lie off s = 0: w there and at s = 0 then differ by 1.5 % of w0 for two waves."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,14 +61,28 @@ class DeformationLaw(Described):
         return _harmonics(self)
 
     def check(self) -> None:
-        self.harmonics()
+        """Raise LawError for a law that no wave generator makes, or whose angles are not counted from the major axis."""
+        name, waves = type(self).__name__, self.waves
+        if waves < 2:
+            raise LawError(
+                f"{name}: w has one wave around the circumference, which only moves the fibre as a whole; a wave generator has two or more."
+            )
+        off = float(np.degrees(-np.angle(self.harmonics()[waves]) / waves))
+        if abs(off) > AXIS_TOLERANCE:
+            raise LawError(
+                f"{name}: the wave is highest {abs(off):.3g} deg {'after' if off > 0.0 else 'before'} s = 0; s counts from the major axis, "
+                f"where w is largest outwards (within {AXIS_TOLERANCE:g} deg). Shift the angles."
+            )
 
 
 @lru_cache(maxsize=256)
 def _harmonics(law: DeformationLaw) -> npt.NDArray[np.complex128]:
     angles = 2.0 * np.pi * np.arange(SAMPLES) / SAMPLES
-    w = np.asarray(law.radial(angles), float)
     name = type(law).__name__
+    try:
+        w = np.asarray(law.radial(angles), float)
+    except TypeError as error:
+        raise LawError(f"{name}: w does not accept an array of angles ({error}). Use numpy functions: np.cos, not math.cos.") from error
     if w.shape != angles.shape or not np.isfinite(w).all():
         raise LawError(f"{name}: w must be a finite number [m] at every angle of a turn; it has to accept an array of angles.")
     largest = float(np.max(np.abs(w)))

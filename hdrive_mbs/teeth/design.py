@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -21,6 +21,9 @@ VARIABLES = ("profile_angle", "height", "clearance", "amplitude")
 UNITS = {"profile_angle": "rad", "height": "m", "clearance": "m", "amplitude": "m"}
 STEPS = 601
 """Angles from the starting to the engagement axis, every 0.15 degrees for two waves."""
+
+LARGEST_ANGLE = degrees(60.0)
+"""Profile angle [rad] up to which StraightToothWheel takes one."""
 
 REASONS = (
     "admissible",
@@ -125,6 +128,15 @@ class DesignWindow:
         return "\n".join(lines)
 
 
+def common_amplitude(windows: Sequence[DesignWindow]) -> tuple[float, float] | None:
+    """Range of w0 [m] admissible in every stage of one flexspline, the rest as in each stage's best point; None if there is none."""
+    ranges = [(bound.low, bound.high) for window in windows for bound in window.bounds if bound.variable == "amplitude"]
+    if len(ranges) < len(windows):
+        return None
+    low, high = max(low for low, _ in ranges), min(high for _, high in ranges)
+    return (low, high) if low <= high else None
+
+
 def _shown(name: str, value: float) -> str:
     if name == "profile_angle":
         return f"{np.degrees(value):.2f} deg"
@@ -218,6 +230,11 @@ class DesignTask(Described):
                 raise ParameterError(
                     f"DesignTask.evaluate: {name} must be finite and not negative, found {np.min(values):g} {UNITS[name]}."
                 )
+        if np.max(alpha) > LARGEST_ANGLE:
+            raise ParameterError(
+                f"DesignTask.evaluate: profile_angle = {np.max(alpha):g} rad: must be at most {LARGEST_ANGLE:.4g} rad "
+                f"({np.degrees(LARGEST_ANGLE):g} deg); angles are in rad (use degrees(...))."
+            )
         d, m = self.direction, self.module
         addendum = (h - c) / 2.0
         r_f, r_r = m * self.flexible_teeth / 2.0, m * self.rigid_teeth / 2.0
@@ -319,6 +336,8 @@ class DesignTask(Described):
         """Search a grid of per_variable^4 designs, choose the best and follow each variable through it to its limits."""
         from scipy.ndimage import binary_erosion
 
+        if per_variable < 2:
+            raise ParameterError(f"window: {per_variable} points per variable; a grid needs at least 2.")
         chosen = self.search_box()
         for name, limits in (box or {}).items():
             if name not in chosen:

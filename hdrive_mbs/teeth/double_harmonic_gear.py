@@ -9,7 +9,7 @@ from hdrive_mbs.quantities import option, parameter
 from hdrive_mbs.teeth.deformation import DeformationLaw
 from hdrive_mbs.teeth.gear import WaveGear
 from hdrive_mbs.teeth.kinematics import Mesh
-from hdrive_mbs.teeth.stage import Stage
+from hdrive_mbs.teeth.stage import Stage, check_kind
 from hdrive_mbs.teeth.wheel import ToothedWheel
 
 
@@ -34,6 +34,8 @@ class DoubleHarmonicGear(WaveGear):
     output = "output_wheel"
 
     def check(self) -> None:
+        for name in ("flexspline_outer", "circular_spline", "flexspline_inner", "output_wheel"):
+            check_kind("DoubleHarmonicGear", name, getattr(self, name), ToothedWheel)
         if self.flexspline_outer.direction < 0 or self.flexspline_inner.direction > 0:
             raise ParameterError("DoubleHarmonicGear: the outer teeth of the flexspline must point outwards and the inner ones inwards.")
         self.stages()

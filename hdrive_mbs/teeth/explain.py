@@ -40,6 +40,6 @@ def explain_clearances(result: Clearances) -> str:
         else "Bring w0 closer to module * (difference of teeth)/2, or raise the backlash or the profile angle."
     )
     return (
-        f"{stage.name}: {kind}, up to {-micro * result.minimum:.1f} um ({feature}) at {angle:.1f} deg from the starting axis, where the "
+        f"{stage.name}: {kind}, up to {-micro * result.minimum:.2g} um ({feature}) at {angle:.1f} deg from the starting axis, where the "
         f"teeth have {depth:.3f} mm of common height. {cure}"
     )

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import polynomial
 
+from hdrive_mbs.errors import LawError
 from hdrive_mbs.teeth.deformation import DeformationLaw, FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -95,6 +96,12 @@ def shortening(w: ComplexArray, v: ComplexArray, radius: float, second_order: bo
     samples = max(64, 8 * len(w))
     s = 2.0 * np.pi * np.arange(samples) / samples
     slope = _series(w, s, 1) - _series(v, s, 0)
+    steepest = float(np.max(np.abs(slope)))
+    if steepest >= radius and not second_order:
+        raise LawError(
+            f"The fibre (r0 = {1e3 * radius:g} mm) would have to stand upright or fold: dw/ds - v reaches {1e3 * steepest:.4g} mm, "
+            "which must stay below r0. Make the deformation law smoother or smaller."
+        )
     lost = slope**2 / (2.0 * radius) if second_order else radius - np.sqrt(radius**2 - slope**2)
     terms = np.asarray(np.fft.rfft(lost) / samples, complex)[: 4 * len(w)]
     terms[1:] *= 2.0

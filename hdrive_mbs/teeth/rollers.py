@@ -29,7 +29,8 @@ class FourForceDeformation(DeformationLaw):
 
     which between the forces is  w0 (A cos s + s sin s sin b - 4/pi) / (A - 4/pi)  with
     A = sin b + (pi/2 - b) cos b.  Here w0 is the displacement on the major axis, which is the
-    largest one as long as tan b <= pi/2 - b, that is up to 40.7 degrees.
+    largest one outwards as long as tan b <= pi/2 - b, that is up to 40.7 degrees.  Inwards, on the
+    minor axis, it is 0.99 w0 for b = 20, 1.09 w0 for 30 and 1.20 w0 for 35 degrees.
 
     Source: thin-ring theory (Timoshenko, Strength of Materials, part II), in this use M. N. Ivanov,
     Wave gears, 1981 (b of 20 to 35 degrees).  Leaves out the contact width of the rollers, shear,

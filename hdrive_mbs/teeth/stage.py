@@ -15,6 +15,13 @@ from hdrive_mbs.teeth.kinematics import check_assembly
 from hdrive_mbs.teeth.wheel import StraightToothWheel, ToothedWheel
 
 
+def check_kind(owner: str, field: str, value: object, kind: type[Described]) -> None:
+    """Raise ParameterError unless the value is of the class that the field holds."""
+    if not isinstance(value, kind):
+        example = "CosineDeformation(amplitude=mm(0.3))" if kind is DeformationLaw else "StraightToothWheel(...)"
+        raise ParameterError(f"{owner}: {field} = {value!r} is no {kind._kind}; give one, for example {example}.")
+
+
 @dataclass(frozen=True, kw_only=True)
 class Stage(Described):
     """A flexible and a rigid ring of teeth, the neutral fibre and the law that deforms it.
@@ -32,6 +39,9 @@ class Stage(Described):
     deformation: DeformationLaw = option("law of the radial displacement of the fibre")
 
     def check(self) -> None:
+        check_kind(self.name, "flexible", self.flexible, ToothedWheel)
+        check_kind(self.name, "rigid", self.rigid, ToothedWheel)
+        check_kind(self.name, "deformation", self.deformation, DeformationLaw)
         if self.flexible.direction == self.rigid.direction:
             word = "outwards" if self.flexible.direction > 0 else "inwards"
             raise ParameterError(f"{self.name}: the teeth of both wheels point {word}; one must point outwards and one inwards.")
@@ -145,6 +155,13 @@ class Stage(Described):
         backlash : m, along the reference circle; half of it is taken from each tooth thickness pi m/2
         The teeth point outwards if the rigid wheel has more teeth.
         """
+        check_kind(name, "deformation", deformation, DeformationLaw)
+        if rigid_teeth == flexible_teeth:
+            waves = deformation.waves
+            raise ParameterError(
+                f"{name}: both wheels have {flexible_teeth:g} teeth. The rigid wheel needs more around the flexible one, usually "
+                f"{flexible_teeth + waves:g}, or fewer inside it, usually {flexible_teeth - waves:g}."
+            )
         outward = 1 if rigid_teeth > flexible_teeth else -1
         if clearance < 0.0:
             raise ParameterError(

@@ -252,7 +252,9 @@ def test_every_recorded_numpy_function_computes_what_numpy_computes(name: str) -
 @pytest.mark.parametrize(
     "law",
     [
-        lambda a: np.clip(a, min=-1.0, max=0.5),
+        pytest.param(
+            lambda a: np.clip(a, min=-1.0, max=0.5), marks=pytest.mark.skipif(np.__version__ < "2.1", reason="numpy 2.1 names them")
+        ),
         lambda a: np.clip(a, a_min=-1.0, a_max=0.5),
         lambda a: np.clip(a, None, 0.5),
         lambda a: a.clip(-1.0, 0.5) if isinstance(a, np.ndarray) else np.clip(a, -1.0, 0.5),

@@ -72,6 +72,8 @@ def test_flanks_are_parallel_at_full_depth() -> None:
         ({"fibre_radius": hm.mm(30.1)}, "lies in the teeth"),
         ({"addendum": 0.24}, "root_radius = .* m: must be greater than 0.0 m"),
         ({"flexible_teeth": 202.5}, "whole number"),
+        ({"rigid_teeth": 202}, "both wheels have 202 teeth.* usually 204, or fewer inside it, usually 200"),
+        ({"deformation": hm.mm(0.3)}, "deformation = 0.0003 is no deformation law; give one"),
     ],
     ids=lambda value: value if isinstance(value, str) else "-".join(value),
 )
@@ -137,6 +139,8 @@ def test_a_double_gear_that_cannot_be_is_refused() -> None:
         good.replacing(flexspline_outer=good.flexspline_inner)
     with pytest.raises(ParameterError, match="lies in the teeth"):
         good.replacing(fibre_radius=hm.mm(28.7))
+    with pytest.raises(ParameterError, match="output_wheel = 188 is no toothed wheel"):
+        good.replacing(output_wheel=188)
 
 
 def test_millimetres_given_as_metres_are_noticed() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -147,6 +149,10 @@ def test_a_table_that_does_not_end_as_it_began_is_refused() -> None:
         (lambda s: 0.0 * s, "zero everywhere"),
         (lambda s: W0 / np.cos(2.0 * s - np.pi / 2.0 + np.pi / 2.0) * np.where(s == 0.0, np.nan, 1.0), "finite"),
         (lambda s: 1.0, "array"),
+        (lambda s: W0 * math.cos(2.0 * s), "Use numpy functions: np.cos"),
+        (lambda s: W0 * np.cos(s), "one wave around the circumference"),
+        (lambda s: -W0 * np.cos(2.0 * s), "highest 90 deg .* s counts from the major axis"),
+        (lambda s: W0 * np.cos(2.0 * s - 0.3), "highest 8.59 deg after s = 0"),
     ],
 )
 def test_a_function_that_a_fibre_cannot_follow_is_refused(function: object, words: str) -> None:
@@ -162,6 +168,17 @@ def test_half_a_wave_is_refused() -> None:
 
 
 def test_a_law_that_is_not_positive_on_the_major_axis_is_not_scaled() -> None:
-    law = hm.FunctionDeformation(function=lambda s: -W0 * np.cos(2.0 * s))
+    law = hm.FunctionDeformation(function=lambda s: W0 * (np.cos(2.0 * s) - 0.6 * np.cos(4.0 * s) - 0.5 * np.cos(6.0 * s)))
     with pytest.raises(ParameterError, match="must be positive there"):
         law.scaled(0.2e-3)
+
+
+def test_a_law_whose_wave_is_a_little_off_the_axis_is_taken() -> None:
+    assert hm.FunctionDeformation(function=lambda s: W0 * np.cos(2.0 * (s - np.radians(4.0)))).waves == 2
+
+
+def test_a_fibre_that_would_have_to_fold_is_refused() -> None:
+    # dw/ds - v reaches about 100 w0 = 30 mm, more than r0
+    law = hm.FunctionDeformation(function=lambda s: W0 * (np.cos(2.0 * s) + 0.99 * np.sin(100.0 * s)))
+    with pytest.raises(LawError, match=r"r0 = 29.3 mm.* stand upright or fold"):
+        fibre(law, R0)

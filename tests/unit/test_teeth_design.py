@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.errors import ParameterError, PlaceError
 from hdrive_mbs.teeth.amplitude_window import amplitude_window
-from hdrive_mbs.teeth.design import REASONS, VARIABLES
+from hdrive_mbs.teeth.design import REASONS, VARIABLES, common_amplitude
 from models.double_harmonic_transmission import gear
 
 TASK = hm.DesignTask(
@@ -129,6 +130,12 @@ def test_a_search_without_an_answer_says_what_stops_it() -> None:
         (lambda: TASK.window({"angle": (0.1, 0.2)}), PlaceError, "No variable 'angle'. A design has: profile_angle"),
         (lambda: TASK.window({"height": (2e-3, 1e-3)}), ParameterError, "it must rise"),
         (lambda: TASK.evaluate(**{**GOOD, "clearance": -1e-5}), ParameterError, "clearance must be finite and not negative"),
+        (
+            lambda: TASK.evaluate(**{**GOOD, "profile_angle": 30.0}),
+            ParameterError,
+            r"profile_angle = 30 rad: must be at most 1.047 rad \(60 deg\)",
+        ),
+        (lambda: TASK.window(per_variable=1), ParameterError, "a grid needs at least 2"),
         (lambda: TASK.replacing(rigid_teeth=203), ParameterError, "do not assemble"),
         (lambda: TASK.replacing(backlash=-1e-6), ParameterError, "backlash"),
     ],
@@ -157,6 +164,14 @@ def test_the_gear_s_window_is_the_narrower_one_of_its_stages() -> None:
     each = [amplitude_window(stage) for stage in gear("A").stages()]
     assert both.low == max(one.low for one in each)
     assert both.high == min(one.high for one in each)
+
+
+def test_windows_have_a_common_w0_only_where_all_have_one(window: hm.DesignWindow) -> None:
+    bound = next(one for one in window.bounds if one.variable == "amplitude")
+    assert common_amplitude([window, window]) == (bound.low, bound.high)
+    apart = dataclasses.replace(window, bounds=(dataclasses.replace(bound, low=bound.high + 1e-6, high=bound.high + 2e-6),))
+    assert common_amplitude([window, apart]) is None
+    assert common_amplitude([window, dataclasses.replace(window, bounds=())]) is None
 
 
 def test_variables_have_units() -> None:

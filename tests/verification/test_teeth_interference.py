@@ -149,6 +149,45 @@ def test_the_lost_motion_is_the_turn_between_contacts_on_both_sides() -> None:
     assert result.lost_motion == pytest.approx(10e-6 / 30.6e-3, rel=0.1)
 
 
+@pytest.mark.parametrize("index", [0, 1])
+def test_the_lost_motion_is_that_of_a_flexspline_that_slides_around_its_generator(index: int) -> None:
+    # all teeth against all teeth, each moved by the turn along the deformed fibre, which lost_motion leaves out
+    stage = gear("A").stages()[index]
+    fibre, outline, number = stage.fibre(), stage.flexible.outline(), np.arange(stage.flexible.teeth)
+    tree = shapely.STRtree(shapely.polygons(1e6 * rigid_teeth(stage, np.arange(stage.rigid.teeth, dtype=float))))
+
+    def touches(turn: float) -> bool:
+        for phi in np.arange(8) / 8.0 * stage.flexible.pitch_angle:
+            s = stage.start + number * stage.flexible.pitch_angle - phi + turn
+            theta, up = fibre.rotation(s)[:, None], outline[:, 1] - stage.fibre_radius
+            x = fibre.tangential(s)[:, None] + outline[:, 0] * np.cos(theta) + up * np.sin(theta)
+            y = stage.fibre_radius + fibre.radial(s)[:, None] + up * np.cos(theta) - outline[:, 0] * np.sin(theta)
+            angle = (number * stage.flexible.pitch_angle + stage.relative_turn * phi + turn)[:, None]
+            points = np.stack((x * np.cos(angle) + y * np.sin(angle), y * np.cos(angle) - x * np.sin(angle)), axis=-1)
+            if len(tree.query(shapely.polygons(1e6 * points), predicate="intersects")[0]):
+                return True
+        return False
+
+    total = 0.0
+    for side in (1.0, -1.0):
+        free, met = 0.0, 1e-3
+        while met - free > 1e-7:
+            middle = 0.5 * (free + met)
+            free, met = (free, middle) if touches(side * middle) else (middle, met)
+        total += free
+    # (w0/r)(1 + 2 tan alpha): sideways dv/ds = w0, radially dw/ds up to 2 w0 across the flank
+    along = 0.3 / 29.3 * (1.0 + 2.0 * np.tan(np.radians(30.0)))
+    assert hm.clearances(stage).lost_motion == pytest.approx(total, rel=along)
+
+
+@pytest.mark.parametrize("name", ["A", "C"])
+def test_the_smallest_distance_is_reported_for_the_first_of_the_places_that_are_alike(name: str) -> None:
+    for stage in gear(name).stages():
+        result = hm.clearances(stage)
+        assert result.angles[result.worst] < np.pi / 2.0
+        assert result.gap[result.worst] == pytest.approx(result.minimum, abs=2e-13)
+
+
 def test_more_backlash_is_more_clearance_and_more_lost_motion() -> None:
     def stage(backlash: float) -> hm.Stage:
         return hm.Stage.standard(

@@ -1,0 +1,120 @@
+"""What a user sees of an object: one screen, not all its numbers; and what help() says about its fields."""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import hdrive_mbs as hm
+from hdrive_mbs.cli.main import app
+from models.harmonic_drive_train import build
+
+
+def results() -> list[hm.Result]:
+    response = hm.simulate(build(), 0.05)
+    return [
+        response,
+        hm.start_up(build(), 0.05),
+        hm.modes(build(), torque=50.0),
+        hm.torsion(build()),
+        hm.torsional_campbell(build(), np.linspace(5.0, 160.0, 5), torque=50.0),
+        hm.energy_balance(response),
+        hm.spectrum(response, "gear.torque"),
+        hm.reduce(build()),
+    ]
+
+
+def test_a_printed_result_names_scene_status_and_every_field_in_short_lines() -> None:
+    for result in results():
+        lines = repr(result).splitlines()
+        assert lines[0] == f"{type(result).__name__} of 'harmonic drive train': {result.status}"
+        shown = [line.split()[0] for line in lines[1:]]
+        hidden = {"scene", "status", "settings", "versions"}
+        assert shown == [name for name in result.__dataclass_fields__ if name not in hidden]
+        assert all(len(line) < 120 for line in lines[1:] if " reason " not in line), type(result).__name__
+        assert str(result) == repr(result)
+
+
+def test_a_printed_array_shows_its_size_and_range() -> None:
+    modes = hm.modes(build(), torque=50.0)
+    assert f"[ {modes.undamped[0]:.6f}" in repr(modes)
+    curve = hm.torsion(build(), largest_torque=137.0, points=11)
+    assert f"{len(curve.torque)} values, -137 to 137" in repr(curve)
+
+
+def test_a_printed_history_shows_span_and_range() -> None:
+    history = hm.TimeHistory("a", "N m", np.array([0.0, 1.0, 2.0]), np.array([5.0, -1.0, 0.5]))
+    assert repr(history) == "TimeHistory 'a' [N m]: 3 values from 0 s to 2 s, -1 to 5 N m"
+
+
+def test_help_lists_the_fields_with_unit_meaning_range_and_default() -> None:
+    text = inspect.getdoc(hm.Motor) or ""
+    assert "inertia [kg m^2] : rotor inertia J_s, above 0" in text
+    assert "viscous [N m s/rad] : viscous drag on the absolute speed, at least 0, default 0" in text
+    assert "characteristic : torque law" in text
+
+
+def test_help_of_a_subclass_lists_inherited_fields_once() -> None:
+    @dataclass(frozen=True, kw_only=True)
+    class WornMotor(hm.Motor):
+        """A motor with play."""
+
+        play: float = hm.parameter("rad", "play of the bearing", default=0.01, low=0.0)
+
+    text = inspect.getdoc(WornMotor) or ""
+    assert text.startswith("A motor with play.\n\nFields")
+    assert text.count("Fields") == 1
+    assert "play [rad] : play of the bearing, at least 0, default 0.01" in text
+    assert text.count("    inertia [kg m^2]") == 1
+
+
+SCENE = """
+import hdrive_mbs as hm
+from own_drag import OwnDrag
+from models.harmonic_drive_train import build
+"""
+DRAG = '''
+from dataclasses import dataclass
+from typing import ClassVar
+import hdrive_mbs as hm
+
+
+@dataclass(frozen=True, kw_only=True)
+class OwnDrag(hm.TorqueEffect):
+    """tau = -a w."""
+
+    scale: float = hm.parameter("N m s/rad", "a", low=0.0)
+    dissipative: ClassVar[bool] = True
+    signature: ClassVar[str] = "drag in proportion to speed"
+
+    def torque(self, time, angle, speed):
+        return -self.scale * speed
+'''
+
+
+def test_a_scene_may_import_an_effect_that_lies_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.path", list(__import__("sys").path))
+    (tmp_path / "scene.py").write_text(SCENE)
+    (tmp_path / "own_drag.py").write_text(DRAG)
+    scene = str(tmp_path / "scene.py")
+    done = CliRunner().invoke(app, ["modes", scene, "--effect", "OwnDrag@motor:scale=1e-3"], catch_exceptions=False)
+    assert done.exit_code == 0
+    wrong = CliRunner().invoke(app, ["modes", scene, "--effect", "OwnDrag@motor:signature=x"])
+    assert str(wrong.exception) == "No field 'signature'. OwnDrag has: scale."
+
+
+def test_a_scene_file_with_an_unknown_class_says_how_to_make_it_known(tmp_path: Path) -> None:
+    path = hm.save_scene(build(), tmp_path / "a.toml")
+    path.write_text(path.read_text().replace('type = "Motor"', 'type = "MyMotor"'))
+    with pytest.raises(hm.PlaceError, match=r"No type 'MyMotor'.*import its module first, or use load_scene\(path, types="):
+        hm.load_scene(path)
+
+
+def test_a_number_in_place_of_teeth_is_refused() -> None:
+    with pytest.raises(hm.ParameterError, match=r"HarmonicDrive\.teeth = 3\.0: must be a gear geometry"):
+        build().replacing({"gear.teeth": 3.0})
