@@ -107,6 +107,7 @@ _MODULE_OF = {name: module for module, exported in _WHERE.items() for name in ex
 
 __all__ = ["__version__", *sorted(_MODULE_OF)]
 
+
 def __getattr__(name: str) -> Any:
     module = _MODULE_OF.get(name)
     if module is None:

@@ -42,7 +42,7 @@ def _times(case: Mapping[str, Any], target: float) -> str:
     rows = []
     for name, method in case["methods"].items():
         seconds = method["seconds_at_target"]
-        if math.isfinite(seconds):
+        if seconds is not None and math.isfinite(seconds):
             rows.append((name, f"{seconds:.4f}", f"{seconds / fastest:.2f}"))
         else:
             best = min((e, s) for e, s in zip(method["error"], method["median_seconds"], strict=True))
@@ -58,6 +58,7 @@ def _times(case: Mapping[str, Any], target: float) -> str:
 def ratios(case: Mapping[str, Any]) -> dict[str, float]:
     """How many times longer others take than the engine with symbolic functions, at the target error."""
     at = {name: method["seconds_at_target"] for name, method in case["methods"].items()}
+    at = {name: math.nan if seconds is None else seconds for name, seconds in at.items()}  # as JSON has it
     return {name: at.get(name, math.nan) / at[SYMBOLIC] for name in (LSODA, ODEINT, PYTHON, *LOOPS)}
 
 

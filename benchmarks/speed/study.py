@@ -21,7 +21,7 @@ TARGET = 1e-6
 CASES = {
     "train": "the train of models/harmonic_drive_train.py",
     "light": "the same with B_FS = 5 and B_wwy = 1 N m s/rad in place of 20 and 5",
-    "joint": "the same with the data of a robot joint: output flange of 0.012 kg m2 on the flexspline",
+    "joint": "the same with the data of a robot joint",
 }
 """The dampings of the first make one mode of pure decay with 57,000 1/s; those of the others do not."""
 
@@ -42,7 +42,8 @@ CHANGES: dict[str, dict[str, float]] = {
         "load.inertia": 1.8,
     },
 }
-"""The joint: a bench with a gear of the same size (1 arcmin, 12 N m s/rad) and an elastic coupling of 400 N m/rad."""
+"""The joint: an output flange of 0.012 kg m2 on the flexspline, a bench with a gear of the same size
+(1 arcmin, 12 N m s/rad) and an elastic coupling of 400 N m/rad."""
 
 
 def case(name: str) -> hm.Scene:

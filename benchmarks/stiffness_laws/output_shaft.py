@@ -21,7 +21,7 @@ def output_shaft(duration: float) -> tuple[dict[str, Any], list[Claim], Measured
     shaft = hm.Shaft.from_geometry(diameter=hm.mm(26.0), length=hm.mm(70.0), shear_modulus=SHEAR_MODULUS)
     used = build().parts["output_shaft"].stiffness  # type: ignore[attr-defined]
     load = load_above_gap()
-    found = measure(laws()[CONTINUOUS], load, hm.DormandPrince(), duration)
+    found = measure(laws()[CONTINUOUS], load, hm.DormandPrince(relative_tolerance=1e-6, absolute_tolerance=1e-8), duration)
     twist = -found.output_twist  # phi_MR - phi_FS of the paper: negative while the motor drives
     static = -np.asarray(load.torque(found.times, 0.0, 0.0)) / used
     numbers = {

@@ -25,7 +25,7 @@ EXPLICIT = "explicit, adaptive"
 FIXED = "explicit, fixed step"
 IMPLICIT = "implicit"
 SOLVERS: dict[str, hm.Solver] = {
-    EXPLICIT: hm.DormandPrince(),
+    EXPLICIT: hm.DormandPrince(relative_tolerance=1e-6, absolute_tolerance=1e-8),
     FIXED: hm.RungeKutta4(step=2e-5),
     IMPLICIT: hm.Trapezoidal(step=1e-4),
 }

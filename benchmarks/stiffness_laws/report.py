@@ -14,7 +14,7 @@ def report(numbers: Mapping[str, Any], claims: Sequence[Claim]) -> str:
     parts = [
         "# The stiffness laws of Folega et al. 2014, judged",
         "Train of models/harmonic_drive_train.py, laws fitted to the catalogue curve of Table 1 up to 137 N m. Load in the gap torque: "
-        "4 + 3 sin(2 pi t) N m; above it: 20 + 5 sin(2 pi t) N m. Explicit, adaptive: DormandPrince at its defaults (1e-6, 1e-8), "
+        "4 + 3 sin(2 pi t) N m; above it: 20 + 5 sin(2 pi t) N m. Explicit, adaptive: DormandPrince (1e-6, 1e-8), "
         "coarse: 1e-4, 1e-6; explicit, fixed step: RungeKutta4, 20 us; implicit: Trapezoidal, 0.1 ms. CPU seconds.",
         facts(numbers["machine"]),
         "## Claims",

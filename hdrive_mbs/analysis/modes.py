@@ -34,7 +34,8 @@ class Modes(Result):
     """Modes at one operating point.
 
     bodies : names of the n bodies, in the order of the shapes
-    undamped : natural frequencies without damping [rad/s], ascending, rigid-body motion left out
+    undamped : natural frequencies without damping [rad/s], ascending, rigid-body motion left out; stiffness
+        that sits in the states of an effect (hysteresis, bristles) counts in the damped ones only
     shapes : (n, len(undamped)), angle of each body in true sense, largest entry 1
     damped : frequencies of the oscillating damped modes [rad/s], ascending; a mode that damping
         turns into pure decay is not in it (see decay_rates)

@@ -46,9 +46,7 @@ def demo(
         "start_up_kinematic_error": simulate(with_error, 1.5, sample_step=5e-4),
         "torsion": torsion(scene),
         "modes": modes(scene),
-        "campbell": torsional_campbell(
-            scene, np.linspace(2.0, 160.0, 60), orders={"gear.wave_generator": (1.0, 2.0, 4.0)}, torque=20.0
-        ),
+        "campbell": torsional_campbell(scene, np.linspace(2.0, 160.0, 60), orders={"gear.wave_generator": (1.0, 2.0, 4.0)}, torque=20.0),
     }
     rows = []
     for name, result in results.items():

@@ -24,7 +24,7 @@ def run(
     duration: Annotated[float, typer.Option(help="Simulated time [s].")] = 1.0,
     initial_speed: Annotated[float, typer.Option(help="Motor speed at t = 0 [rad/s].")] = 0.0,
     solver: Annotated[str, typer.Option(help="dormand-prince, runge-kutta-4, trapezoidal or generalized-alpha.")] = "dormand-prince",
-    tolerance: Annotated[float, typer.Option(help="Relative tolerance of dormand-prince.")] = 1e-6,
+    tolerance: Annotated[float, typer.Option(help="Relative tolerance of dormand-prince.")] = 1e-8,
     step: Annotated[float, typer.Option(help="Step of the other solvers [s].")] = 1e-4,
     estimate_error: Annotated[bool, typer.Option("--estimate-error", help="Run again finer and state the error.")] = False,
     plot: Annotated[list[str] | None, typer.Option(help="Channels to draw (several times); a choice is made if not given.")] = None,

@@ -30,9 +30,7 @@ class LinearSystem:
     matrix: FloatArray
 
 
-def linearise(
-    assembly: Assembly, *, angles: Mapping[str, float], speeds: Mapping[str, float], states: Mapping[str, float]
-) -> LinearSystem:
+def linearise(assembly: Assembly, *, angles: Mapping[str, float], speeds: Mapping[str, float], states: Mapping[str, float]) -> LinearSystem:
     """Linearise at forward angles, speeds and states (time 0).
 
     Exudyn differentiates numerically; without ``forODE2`` it would drop the velocity dependence of

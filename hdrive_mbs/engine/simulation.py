@@ -99,19 +99,26 @@ def run(
     error = ""
     assembly.failures.clear()
     with _interrupt_flag() as interrupted, _quiet():
-        stuck = _watch(mbs, duration, interrupted, cancel, progress)
+        stuck = _watch(mbs, duration, getattr(solver, "max_steps", math.inf), interrupted, cancel, progress)
         started = time.process_time()
         try:
             mbs.SolveDynamic(settings, solverType=solver_type, showHints=False, showCausingItems=False)
         except Exception as failure:  # exudyn raises its own and pybind errors; all end the run the same way
             error = str(failure).strip().partition("\n")[0] or type(failure).__name__
         seconds = time.process_time() - started
-    if stuck.is_set():
-        error = "the step shrinks to nothing, so there the solution grows without bound or a law gives no finite number"
+    if stuck:
+        error = stuck[0]
     elif assembly.failures:
         error = assembly.failures[0]
     cancelled = interrupted.is_set() or (cancel is not None and cancel.is_set())
     return _collect(assembly, solver, duration, error, cancelled, seconds)
+
+
+NOTHING = "the step shrinks to nothing, so there the solution grows without bound or a law gives no finite number"
+CHATTER = (
+    "a law that jumps (JumpTorqueStiffness under a load inside its gap torque, for one) makes the solver chatter. Take a "
+    "continuous law, looser tolerances or a fixed step, or raise max_steps if the run is just long"
+)
 
 
 class _StopError(Exception):
@@ -119,14 +126,19 @@ class _StopError(Exception):
 
 
 def _watch(
-    mbs: Any, duration: float, interrupted: threading.Event, cancel: threading.Event | None, progress: Progress | None
-) -> threading.Event:
+    mbs: Any,
+    duration: float,
+    max_steps: float,
+    interrupted: threading.Event,
+    cancel: threading.Event | None,
+    progress: Progress | None,
+) -> list[str]:
     """Look at the cancel flags every 32 steps and report at most ten times a second.
 
-    Returns an event that is set when the run got stuck: where values stop being finite DOPRI5
-    repeats its step for ever, and then only an exception stops it (the False of a cancel does not).
+    Returns a list that holds the reason when the run is given up: where values stop being finite
+    DOPRI5 repeats its step for ever, and then only an exception stops it (the False of a cancel does not).
     """
-    clock, stuck = time.monotonic, threading.Event()
+    clock, given_up = time.monotonic, list[str]()
     # t is the end of the step that is tried; a rejected step may reach far ahead, so the lowest of a block counts
     calls, stopping, next_report, last, lowest = -1, 0, clock() + 0.1, -1.0, math.inf
 
@@ -143,16 +155,19 @@ def _watch(
         lowest = min(lowest, t)
         if calls & 4095 == 4064:
             if lowest - last < STUCK * duration:
-                stuck.set()
+                given_up.append(NOTHING)
                 raise _StopError
             last, lowest = lowest, math.inf
+        if calls > max_steps:
+            given_up.append(f"{calls} trial steps are more than max_steps = {max_steps:g}; {CHATTER}")
+            raise _StopError
         if progress is not None and clock() > next_report:
             progress(t)
             next_report = clock() + 0.1
         return True
 
     mbs.SetPreStepUserFunction(before_step)
-    return stuck
+    return given_up
 
 
 def _collect(assembly: Assembly, solver: Solver, duration: float, error: str, cancelled: bool, seconds: float) -> RawRun:
@@ -181,8 +196,8 @@ def _collect(assembly: Assembly, solver: Solver, duration: float, error: str, ca
     complete = reached >= duration * (1.0 - 1e-9)
     if not complete and not cancelled:
         why = f": {error}" if error else ""
-        way_out = "Correct the law." if assembly.failures else advice
-        raise SimulationError(f"The run stopped at t = {reached:.6g} s of {duration:g} s with {solver.describe()}{why}. {way_out}")
+        way_out = "Correct the law." if assembly.failures else "" if CHATTER in error else advice
+        raise SimulationError(f"The run stopped at t = {reached:.6g} s of {duration:g} s with {solver.describe()}{why}. {way_out}".rstrip())
     iteration = mbs.sys["dynamicSolver"].it
     return RawRun(
         times=times,

@@ -35,14 +35,15 @@ class DormandPrince(Solver):
     """Adaptive explicit Runge-Kutta 5(4) of Dormand and Prince (1980): the default.
 
     Best for trains: nothing has to be tuned, and with symbolic laws it is the fastest on the engine.
-    The relative tolerance counts against the largest coordinates, in a drive those of the motor: where
-    a small vibration of the slow side is what you look for, use 1e-8 or a shorter max_step.
+    The relative tolerance counts against the largest coordinates, in a drive those of the motor; its
+    default is set so that a small vibration of the slow side comes out too.
     """
 
-    relative_tolerance: float = parameter("1", "relative tolerance of a step", default=1e-6, above=0.0)
-    absolute_tolerance: float = parameter("1", "absolute tolerance of a step (rad, rad/s)", default=1e-8, above=0.0)
+    relative_tolerance: float = parameter("1", "relative tolerance of a step", default=1e-8, above=0.0)
+    absolute_tolerance: float = parameter("1", "absolute tolerance of a step (rad, rad/s)", default=1e-10, above=0.0)
     max_step: float = parameter("s", "longest step", default=1e-2, above=0.0)
     first_step: float = parameter("s", "first step that is tried", default=1e-6, above=0.0)
+    max_steps: float = parameter("1", "trial steps after which a run is given up (a law that jumps chatters)", default=5e6, above=0.0)
 
     order = 5
     adaptive = True

@@ -28,7 +28,7 @@ def plot_modes(result: Modes, ax: Axes | None = None, *, one_axis: bool = True, 
     if count == 0:
         raise AnalysisError("There is no elastic mode at this operating point, so no shape to draw.")
     shapes, place = shown_shapes(result, one_axis), places_along_line(result)
-    what = "angle on the motor's axis" if one_axis else "angle, true sense"
+    what = "angle reduced to the motor's axis" if one_axis else "angle, true sense"
     with house_look():
         if ax is not None:
             for k in range(count):
