@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrive_mbs.analysis.result import Result
-from hdrive_mbs.analysis.spectrum import chosen_history, chosen_span, folding_note, sample_count
+from hdrive_mbs.analysis.spectrum import chosen_history, chosen_span, folding_note, sample_count, values_at
 from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.analysis.windows import line_amplitudes, local_maxima, window_named
 from hdrive_mbs.errors import AnalysisError, ParameterError
@@ -95,8 +95,7 @@ def order_spectrum(
     whole_revolutions : end the span at the last whole revolution, so that whole orders fall on lines
 
     A line of constant order is sharp however the speed changes; the amplitude shown is its mean over
-    the revolutions.  Something of constant frequency is smeared instead.  For a torque shorten the
-    solver's max_step to a tenth of the period looked for, see ``spectrum``.  Raises AnalysisError when
+    the revolutions.  Something of constant frequency is smeared instead.  Interpolation as in ``spectrum``.  Raises AnalysisError when
     the angle does not run in one direction over the span, or by less than one revolution.
     """
     history, scene = chosen_history(source, channel)
@@ -121,7 +120,7 @@ def order_spectrum(
     count = sample_count(history.name, angles, span, step, "rad")
     wanted = angles[0] + direction * span / count * np.arange(count + 1)
     at = _times_of(wanted, times, angles, speeds)
-    values = history.at(at[:-1])
+    values = values_at(source, history, at[:-1])
     amplitude, phase = line_amplitudes(values, shape)
     last = float(at[-1])
     covered = np.abs(speeds[times <= last])

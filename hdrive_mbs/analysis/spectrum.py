@@ -93,9 +93,9 @@ def spectrum(
     step : sampling step [s]; if not given, that of an evenly sampled record, else half the
         shortest usual step of the solver
 
-    The signal is put on even times by Hermite interpolation between the solver's own (order 4
-    where the channel's slope is known: angles, speeds, twists; a torque has none and reads low where a
-    period has few steps, so shorten max_step for it).  A sine whose frequency falls on a line shows its
+    The signal of a response is put on even times by ``Response.at``: Hermite interpolation of angles,
+    speeds and states (order 4), the laws for torques.  A single time history without slope (a measured
+    one) reads low where a period has few samples: 4 % at five.  A sine whose frequency falls on a line shows its
     amplitude exactly; between two lines the Hann window shows up to 15 % less, which ``peaks``
     corrects.  A part that grows or changes frequency during the span shows its average only (see
     ``order_spectrum`` for a run-up).  Raises AnalysisError for a span of less than 4 samples.
@@ -105,7 +105,7 @@ def spectrum(
     begin, finish = chosen_span(history, start, end)
     count = sample_count(history.name, history.between(begin, finish).times, finish - begin, step)
     spacing = (finish - begin) / count
-    values = history.at(begin + spacing * np.arange(count))
+    values = values_at(source, history, begin + spacing * np.arange(count, dtype=float))
     amplitude, phase = line_amplitudes(values, shape)
     return Spectrum(
         scene=scene,
@@ -133,6 +133,11 @@ def chosen_history(source: Response | TimeHistory, channel: str | None) -> tuple
     if channel is None:
         raise ParameterError(f"Name the channel to analyse. The response has: {', '.join(source.channels)}.")
     return source[channel], source.scene
+
+
+def values_at(source: Response | TimeHistory, history: TimeHistory, times: FloatArray) -> FloatArray:
+    """The history at even times; of a response by its laws at the interpolated state."""
+    return source.at(history.name, times) if isinstance(source, Response) else history.at(times)
 
 
 def chosen_span(history: TimeHistory, start: float | None, end: float | None) -> tuple[float, float]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.time_tables import for_tables
@@ -64,6 +65,24 @@ class Response(Result):
 
     def __contains__(self, name: object) -> bool:
         return name in self.values
+
+    def at(self, name: str, times: npt.ArrayLike) -> FloatArray:
+        """A channel at other times.
+
+        Angles, speeds and states by Hermite interpolation; torques and everything else that follows from
+        them by the laws at the interpolated state, so that few steps per period do not flatten them.
+        Of a file that could not hold its scene, as TimeHistory.at does it.
+        """
+        history = self[name]
+        network = None if self.scene is None else self.scene.network()
+        channel = None if network is None else next((item for item in network.channels if item.name == name), None)
+        if history.slope is not None or network is None or channel is None:
+            return history.at(times)
+        wanted = np.asarray(times, float)
+        angles = {body.name: body.sense * self[f"{body.name}.angle"].at(wanted) for body in network.bodies}
+        speeds = {body.name: body.sense * self[f"{body.name}.speed"].at(wanted) for body in network.bodies}
+        states = {state.name: self[state.name].at(wanted) for state in network.states}
+        return read_over(channel.read, network.moment(wanted, angles, speeds, states))
 
     def columns(self) -> dict[str, np.ndarray]:
         return {"time [s]": self.times} | {f"{name} [{self.units[name]}]": values for name, values in self.values.items()}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -55,7 +56,7 @@ def print_table(title: str, headers: Sequence[str], rows: Iterable[Sequence[obje
         table.add_column(escape(header), justify="right" if numbers else "left", overflow="fold", no_wrap=name)
     for row in rows:
         table.add_row(*[f"{item:.6g}" if isinstance(item, float) else escape(str(item)) for item in row])
-    Console().print(table)
+    Console(width=None if sys.stdout.isatty() else 120).print(table)
 
 
 def _is_number(item: object) -> bool:
