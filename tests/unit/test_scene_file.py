@@ -359,7 +359,7 @@ BAD: dict[str, tuple[dict[str, Any], type[HdriveError], str]] = {
     "a part is a number": (
         with_entry("parts", "motor", 5),
         FileFormatError,
-        r"parts\.motor = 5: must be a table with a type, one of: Harm",
+        r"parts\.motor = 5: must be a table with a type, one of: .*HarmonicDrive",
     ),
     "a law is a number": (
         with_entry("parts", "gear", "stiffness", 3.2e4),
