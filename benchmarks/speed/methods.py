@@ -17,6 +17,7 @@ from benchmarks.speed.right_sides import (
     FloatArray,
     compiled_right_side,
     numba_or_none,
+    numpy_right_side,
     python_right_side,
 )
 from hdrive_mbs.engine.assembly import assemble
@@ -56,6 +57,7 @@ def methods(scene: hm.Scene, duration: float) -> list[Method]:
     ]
     plain = python_right_side(scene)
     found += _scipy("Python right side", plain, duration)
+    found += _scipy("numpy right side", numpy_right_side(scene), duration)[:2]
     if numba_or_none() is not None:
         found += _scipy("compiled right side", compiled_right_side(scene), duration)
         fixed, adaptive = compiled_runge_kutta(scene), compiled_dormand_prince(scene)

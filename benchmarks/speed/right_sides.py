@@ -1,4 +1,4 @@
-"""The train's right-hand side by hand: plain scalar Python, and compiled by numba.
+"""The train's right-hand side by hand: with numpy, in plain scalar Python, and compiled by numba.
 
 Seed F (1)-(4) with its misprints corrected, catalogue stiffness (7)-(10), Kloss's motor and a
 sinusoidal load, written as one would for scipy: no numpy on scalars, constants bound once, the
@@ -91,6 +91,35 @@ def python_right_side(scene: hm.Scene) -> Callable[[float, FloatArray], tuple[fl
     """f(t, y) in plain Python.  One ``tolist`` first: arithmetic on numpy scalars would cost twice as much."""
     right = scalar_right_side(scene)
     return lambda t, y: right(t, *y.tolist())
+
+
+def numpy_right_side(scene: hm.Scene) -> Callable[[float, FloatArray], FloatArray]:
+    """f(t, y) with arrays, np.interp and np.concatenate, as most people write it for solve_ivp."""
+    motor, gear, machine = scene.parts["motor"], scene.parts["gear"], scene.parts["load"]
+    input_shaft, output_shaft = scene.parts["input_shaft"], scene.parts["output_shaft"]
+    law, load, curve = gear.stiffness, machine.torque, motor.characteristic
+    ends = 0.5 * np.array([input_shaft.inertia, input_shaft.inertia, output_shaft.inertia, output_shaft.inertia])
+    inertia = np.array([motor.inertia, gear.wave_generator_inertia, gear.flexspline_inertia, machine.inertia]) + ends
+    edge = 0.5 * law.lost_motion
+    corners = edge + np.cumsum([0.0, law.torque_1 / law.stiffness_1, (law.torque_2 - law.torque_1) / law.stiffness_2, 1.0])
+    torques = np.array([0.0, law.torque_1, law.torque_2, law.torque_2 + law.stiffness_3])
+    w_s = 2.0 * np.pi * curve.line_frequency / curve.pole_pairs
+    s_b = (1.0 - curve.rated_speed / w_s) * (curve.breakdown_ratio + np.sqrt(curve.breakdown_ratio**2 - 1.0))
+    breakdown = curve.breakdown_ratio * curve.rated_power / curve.rated_speed
+
+    def right(t: float, y: FloatArray) -> FloatArray:
+        q, w = y[:4], y[4:]
+        slip = 1.0 - w[0] / w_s
+        m_motor = 2.0 * breakdown * s_b * slip / (slip**2 + s_b**2)
+        m_load = load.mean + load.amplitude * np.sin(2.0 * np.pi * load.frequency * t)
+        t_in = input_shaft.stiffness * (q[0] - q[1]) + input_shaft.damping * (w[0] - w[1])
+        twist, rate = q[1] / gear.ratio - q[2], w[1] / gear.ratio - w[2]
+        mesh = np.sign(twist) * np.interp(np.abs(twist), corners, torques) + gear.damping * rate
+        t_out = output_shaft.stiffness * (q[2] - q[3]) + output_shaft.damping * (w[2] - w[3])
+        torque = np.array([m_motor - t_in, t_in - mesh / gear.ratio, mesh - t_out, t_out - m_load])
+        return np.concatenate((w, torque / inertia))
+
+    return right
 
 
 def compiled_right_side(scene: hm.Scene) -> Callable[[float, FloatArray], FloatArray]:

@@ -69,6 +69,8 @@ def test_speed_gives_finite_numbers_for_every_method(speed: tuple[dict[str, Any]
         "scipy LSODA (solve_ivp), Python right side",
         "scipy LSODA (odeint), Python right side",
         "scipy Radau, Python right side",
+        "scipy LSODA (solve_ivp), numpy right side",
+        "scipy LSODA (odeint), numpy right side",
     }
     if HAS_NUMBA:
         expected |= {f"{name}, compiled right side" for name in ("scipy LSODA (solve_ivp)", "scipy LSODA (odeint)", "scipy Radau")}
