@@ -172,3 +172,22 @@ def test_a_load_torque_needs_a_load() -> None:
             ask(scene, torque=5.0)
     with pytest.raises(PlaceError, match="no Load part"):
         hm.torsional_campbell(scene, [1.0, 2.0], torque=5.0)
+
+
+def test_a_speed_controller_settles_at_its_reference_with_the_load_in_its_integral() -> None:
+    # steady: e = 0, so w = w_ref; the integral alone holds the load: ki I = M/u
+    servo = hm.ServoMotor(torque_limit=9.0, proportional_gain=0.35, integral_gain=4.0, reference=hm.ConstantSpeed(value=100.0))
+    scene = train().replacing({"motor.characteristic": servo, "load.torque": hm.ConstantTorque(value=20.0)})
+    point = hm.operating_point(scene)
+    assert point.motor_speed == pytest.approx(100.0, rel=1e-9)
+    assert point.states["motor.integral"] == pytest.approx(20.0 / 100.0 / 4.0, rel=1e-9)
+    assert point.torques["gear"] == pytest.approx(20.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("torque", [2.0, 5.0, 20.0, -5.0])
+def test_a_law_with_a_narrow_steep_ramp_is_balanced(torque: float) -> None:
+    def steep(twist: Any) -> Any:
+        return np.sign(twist) * np.interp(np.abs(twist), [0.0, 1.3e-3, 1.31e-3, 4e-3], [0.0, 0.0, 6.6, 140.0])
+
+    point = hm.operating_point(train().replacing({"gear.stiffness": steep}), torque=torque, motor_speed=100.0)
+    assert point.torques["gear"] == pytest.approx(torque, rel=1e-8)

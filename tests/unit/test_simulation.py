@@ -400,3 +400,10 @@ def test_scenes_are_shipped_to_other_processes_and_solved_there() -> None:
         there = pool.map(final_speed, scenes)
     assert there == [final_speed(scene) for scene in scenes]
     assert there[0] > there[1] > there[2]
+
+
+def test_a_law_that_chatters_is_given_up_after_max_steps_with_the_way_out() -> None:
+    jump = hm.JumpTorqueStiffness(lost_motion=hm.arcmin(9.0), linear=0.0, cubic=3e9)
+    scene = train().replacing({"gear.stiffness": jump, "load.torque": hm.ConstantTorque(value=0.5 * jump.edge_torque)})
+    with pytest.raises(hm.SimulationError, match=r"max_steps = 20000; a law that jumps .* continuous law"):
+        hm.simulate(scene, 1.0, solver=hm.DormandPrince(max_steps=2e4))
