@@ -97,9 +97,9 @@ def modes_at(scene: Scene, assembly: Assembly, point: OperatingPoint) -> Modes:
     outwards = 1.0 + 1e-3 if point.at_corner else 1.0
     angles = {name: outwards * angle for name, angle in point.angles.items()}
     system = linearise(assembly, angles=angles, speeds=point.speeds, states=point.states)
-    undamped, shapes, rigid, left = _undamped(system)
+    undamped, shapes, rigid, basis = _undamped(system)
     senses = np.array([body.sense for body in scene.network().bodies], float)
-    damped, ratio, damped_shapes, decay = _damped(system, left)
+    damped, ratio, damped_shapes, decay = _damped(system, rigid, basis)
     notes = [f"{name} is inside its lost motion or backlash: stiffness 0 there" for name in point.in_gap]
     notes += [f"{name} sits at a corner of its law: the stiffness towards larger twist is taken" for name in point.at_corner]
     if len(undamped) + rigid < len(system.bodies):
@@ -131,8 +131,8 @@ def _scaled(shapes: _Shapes) -> _Shapes:
     return shapes
 
 
-def _undamped(system: LinearSystem) -> tuple[FloatArray, FloatArray, int, float]:
-    """sqrt of the eigenvalues of M^-1 K (states at rest), shapes, number of rigid motions and what is left of their zeros."""
+def _undamped(system: LinearSystem) -> tuple[FloatArray, FloatArray, int, FloatArray]:
+    """sqrt of the eigenvalues of M^-1 K (states at rest), shapes, number of rigid motions, and a basis of all others."""
     values, vectors = np.linalg.eig(np.linalg.solve(system.mass, system.stiffness))
     order = np.argsort(values.real)
     values, vectors = values[order].real, vectors[:, order].real
@@ -142,22 +142,30 @@ def _undamped(system: LinearSystem) -> tuple[FloatArray, FloatArray, int, float]
     mass = np.einsum("ik,ij,jk->k", vectors, system.mass, vectors)
     zero = np.abs(values) * mass <= RIGID * terms
     elastic = ~zero & (values > 0.0)
-    left = float(np.sqrt(np.abs(values[zero]).max(initial=0.0)))
-    return frequencies[elastic], vectors[:, elastic], int(zero.sum()), left
+    basis = np.concatenate([vectors[:, ~zero], vectors[:, zero]], axis=1)
+    return frequencies[elastic], vectors[:, elastic], int(zero.sum()), basis
 
 
-def _damped(system: LinearSystem, left: float) -> tuple[FloatArray, FloatArray, ComplexArray, FloatArray]:
+def _damped(system: LinearSystem, rigid: int, basis: FloatArray) -> tuple[FloatArray, FloatArray, ComplexArray, FloatArray]:
+    """Eigenvalues of the first-order matrix without the angles of rigid-body motion.
+
+    Nothing depends on those angles; kept in, each makes a double zero, which rounding splits into pairs of
+    the size of its square root that look like slow modes.
+    """
     n = len(system.bodies)
-    values, vectors = np.linalg.eig(system.matrix)
-    scale = float(np.max(np.abs(values), initial=0.0))
-    # what numerical differentiation leaves of the zeros of rigid-body motion, whose pairs lie near zero
-    floor = max(3.0 * left, 1e-9 * scale)
+    kept = n - rigid
+    into = np.linalg.inv(basis)[:kept]
+    rest = system.matrix.shape[0] - n
+    left = np.block([[into, np.zeros((kept, rest))], [np.zeros((rest, n)), np.eye(rest)]])
+    right = np.block([[basis[:, :kept], np.zeros((n, rest))], [np.zeros((rest, kept)), np.eye(rest)]])
+    values, vectors = np.linalg.eig(left @ system.matrix @ right)
+    floor = 1e-9 * float(np.max(np.abs(values), initial=0.0))
     oscillating = values.imag > floor
     order = np.argsort(values[oscillating].imag)
-    picked, shapes = values[oscillating][order], vectors[:n, oscillating][:, order]
-    real = np.sort(-values[np.abs(values.imag) <= 1e-9 * scale].real)
-    decay = real[np.abs(real) > floor]
-    return picked.imag, -picked.real / np.abs(picked), shapes, decay
+    picked = values[oscillating][order]
+    shapes = vectors[kept : kept + n, oscillating][:, order] / picked  # angle = speed / lambda
+    real = np.sort(-values[np.abs(values.imag) <= floor].real)
+    return picked.imag, -picked.real / np.abs(picked), shapes, real[np.abs(real) > floor]
 
 
 def matching_damping(point: Modes) -> FloatArray:

@@ -146,6 +146,10 @@ class Reference:
     """(time, which variable, region left, region entered)"""
 
 
+AWAY = 1e-11
+"""s: at 1e-4 rad/s 1e-15 rad, far above the rounding of an angle (2e-19 rad) and far below every tolerance here."""
+
+
 def integrate(
     train: ReferenceTrain,
     times: np.ndarray,
@@ -198,6 +202,12 @@ def integrate(
             passages.append((t, which, before, after))
             if len(passages) == most_passages:
                 break
+            # rounding may leave the state on the near side of the edge, where it would pass back at once, for ever:
+            # go a little way into the new piece before looking for its edges
+            away = min(t + AWAY, end)
+            if away > t:
+                y = solve_ivp(train.bound(regions), (t, away), y, method=method, rtol=relative, atol=absolute).y[:, -1]
+                t = away
     times, out = times[:done], out[:done]
     if train.motor.motion is not None:
         moved = np.array([train.motor.motion(t, train.regions(t, out[k])[1:]) for k, t in enumerate(times.tolist())])
