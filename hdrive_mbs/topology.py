@@ -11,6 +11,7 @@ from hdrive_mbs.components.component import Component, Flange
 from hdrive_mbs.components.motor import Motor
 from hdrive_mbs.errors import SceneError, unknown_place
 from hdrive_mbs.network.draft import Draft, Node
+from hdrive_mbs.network.rigid_mass import NOTHING, RigidMass
 
 GROUND = "ground"
 
@@ -60,7 +61,7 @@ def check_connections(parts: Mapping[str, Component], connections: Sequence[Sequ
         flanges = part.flanges()
         for flange in flanges:
             path = _path(name, flange)
-            if path in used or flange.optional or (alone and len(flanges) == 1):
+            if path in used or flange.optional or flange.free or (alone and len(flanges) == 1):
                 continue
             raise SceneError(
                 f"Loose end: nothing is connected to {path!r} ({type(part).__name__}). "
@@ -93,8 +94,8 @@ def _group(parts: Mapping[str, Component], connections: Sequence[Sequence[str]])
     line = {path: k for k, path in enumerate(path for pair in joints(parts, connections) for path in pair)}
     names: dict[str, str] = {}
     for paths in sorted(members.values(), key=lambda group: min(line.get(path, len(line)) for path in group)):
-        # single-flange parts (motor, load) name the node; then gears; then shaft ends
-        named = min(paths, key=lambda path: ("." in path, path.endswith((".a", ".b"))))
+        # rotors name the node, then single-flange parts (motor, load); then gears; then shaft ends
+        named = min(paths, key=lambda path: (path == GROUND or not flanges[path].is_rotor, "." in path, path.endswith((".a", ".b"))))
         node = GROUND if GROUND in paths else named
         names |= dict.fromkeys(paths, node)
     return names
@@ -141,15 +142,71 @@ def _ideal_ratios(parts: Mapping[str, Component], names: Mapping[str, str]) -> d
     return {node: ratios[node] for node in nodes}
 
 
+def _steps(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> list[tuple[str, str, float, bool]]:
+    """Pairs of flanges, the axial distance [m] from the first to the second, and whether they move as one."""
+    steps = [(left, right, 0.0, True) for left, right in joints(parts, connections) if GROUND not in (left, right)]
+    for name, part in parts.items():
+        flanges = part.flanges()
+        for flange in flanges[1:]:
+            if flange.lateral or part.rigid:
+                steps.append((_path(name, flanges[0]), _path(name, flange), flange.axial - flanges[0].axial, part.rigid))
+    return steps
+
+
+def _walk(start: str, steps: Sequence[tuple[str, str, float, bool]], *, rigid: bool) -> dict[str, float]:
+    """Axial distance of every flange that can be reached from the start, over rigid steps only or over all."""
+    found, todo = {start: 0.0}, [start]
+    while todo:
+        here = todo.pop()
+        for left, right, distance, as_one in steps:
+            if rigid and not as_one:
+                continue
+            for a, b, length in ((left, right, distance), (right, left, -distance)):
+                if a == here and b not in found:
+                    found[b] = found[here] + length
+                    todo.append(b)
+    return found
+
+
+def _positions(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> dict[str, float]:
+    """Axial position of every flange [m]; each line begins at 0 with its first flange."""
+    steps = _steps(parts, connections)
+    found: dict[str, float] = {}
+    order = [path for pair in joints(parts, connections) for path in pair if path != GROUND]
+    for path in [*order, *resolve_flanges(parts)]:
+        if path not in found:
+            reached = _walk(path, steps, rigid=False)
+            lowest = min(reached.values())
+            found |= {name: value - lowest for name, value in reached.items()}
+    return found
+
+
 def start_draft(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> Draft:
     """A draft with all nodes (inertias summed) and no elements yet."""
     names = _group(parts, connections)
     ratios = _ideal_ratios(parts, names)
+    flanges = resolve_flanges(parts)
     inertias: dict[str, float] = dict.fromkeys(ratios, 0.0)
-    for path, flange in resolve_flanges(parts).items():
+    for path, flange in flanges.items():
         inertias[names[path]] += flange.inertia
-    nodes = {
-        node: Node(node, inertias[node], -1 if ratio < -1e-9 else 1, 0.0 if abs(ratio) < 1e-9 else round(ratio, 12))
-        for node, ratio in ratios.items()
-    }
-    return Draft(nodes, {path: node for path, node in names.items() if path != GROUND} | {GROUND: GROUND})
+    lateral = {names[path] for path, flange in flanges.items() if flange.lateral} - {GROUND}
+    positions = _positions(parts, connections) if lateral else {}
+    masses: dict[str, RigidMass] = dict.fromkeys(lateral, NOTHING)
+    rotors: dict[str, str] = {}
+    for path, flange in flanges.items():
+        if flange.is_rotor:
+            rotors.setdefault(names[path], path)
+    reference = {node: rotors.get(node, node) for node in lateral}
+    offsets = {path: positions[path] - positions[reference[node]] for path, node in names.items() if node in lateral and path in positions}
+    for path, flange in flanges.items():
+        if names[path] in lateral:
+            masses[names[path]] += flange.mass.moved(offsets[path])
+    nodes = {}
+    for node, ratio in ratios.items():
+        sense, turns = (-1 if ratio < -1e-9 else 1), (0.0 if abs(ratio) < 1e-9 else round(ratio, 12))
+        if node in lateral:
+            nodes[node] = Node(node, inertias[node], sense, turns, True, masses[node], node in rotors, positions[reference[node]])
+        else:
+            nodes[node] = Node(node, inertias[node], sense, turns)
+    places = {path: node for path, node in names.items() if path != GROUND} | {GROUND: GROUND}
+    return Draft(nodes, places, {path: offset for path, offset in offsets.items() if offset != 0.0})

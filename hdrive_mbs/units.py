@@ -41,6 +41,8 @@ def to_si(text: str, unit: str, where: str) -> float:
 @functools.cache
 def factor(given: str, unit: str, where: str) -> float:
     """What a value in ``given`` is multiplied with to be in ``unit`` (SI)."""
+    if given == unit:  # also of a unit that is only a name, like N/m^n
+        return 1.0
     import pint
 
     registry = _registry()

@@ -88,7 +88,7 @@ def operating_point(scene: Scene, *, motor_speed: float | None = None, torque: f
         scene = with_load(scene, torque)
     if motor_speed is not None and not np.isfinite(motor_speed):
         raise ParameterError(f"motor_speed = {motor_speed} rad/s: must be a finite number.")
-    network = at_speed(scene, motor_speed).network()
+    network = at_speed(scene, motor_speed).network().turning()
     if motor_speed is None and network.motions_drive:
         motor_speed = _prescribed_speed(network)
     if motor_speed is not None:

@@ -18,7 +18,7 @@ from hdrive_mbs.engine.solvers import DormandPrince, Solver
 from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.moment import Moment
-from hdrive_mbs.network.network import Network
+from hdrive_mbs.network.network import Body, Network
 from hdrive_mbs.progress import progress_bar
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray, TimeHistory
@@ -79,8 +79,8 @@ class Response(Result):
         if history.slope is not None or network is None or channel is None:
             return history.at(times)
         wanted = np.asarray(times, float)
-        angles = {body.name: body.sense * self[f"{body.name}.angle"].at(wanted) for body in network.bodies}
-        speeds = {body.name: body.sense * self[f"{body.name}.speed"].at(wanted) for body in network.bodies}
+        angles = {body.name: body.sense * self[_channel(body, "angle")].at(wanted) for body in network.bodies}
+        speeds = {body.name: body.sense * self[_channel(body, "speed")].at(wanted) for body in network.bodies}
         states = {state.name: self[state.name].at(wanted) for state in network.states}
         return read_over(channel.read, network.moment(wanted, angles, speeds, states))
 
@@ -154,6 +154,12 @@ def simulate(
     return _response(scene, network, assembly, raw, settings | {"initial": dict(initial or {})}, error)
 
 
+def _channel(body: Body, kind: str) -> str:
+    if body.lateral:
+        return body.name if kind == "angle" else f"{body.name}_rate"
+    return f"{body.name}.{kind}"
+
+
 def _number(name: str, value: Any, unit: str) -> float:
     try:
         number = float("x" if isinstance(value, str) else value)
@@ -182,8 +188,12 @@ def initial_values(network: Network, speed: float, given: Mapping[str, float]) -
             angles[body.name] = body.sense * value
         elif body is not None and quantity == "speed":
             speeds[body.name] = body.sense * value
+        elif name in bodies and bodies[name].lateral:
+            angles[name] = value
+        elif name.removesuffix("_rate") in bodies and bodies[name.removesuffix("_rate")].lateral:
+            speeds[name.removesuffix("_rate")] = value
         else:
-            known = [f"{body.name}.angle/.speed" for body in network.bodies] + list(states)
+            known = [body.name if body.lateral else f"{body.name}.angle/.speed" for body in network.bodies] + list(states)
             raise unknown_place("initial value", name, known)
     return {"angles": angles, "speeds": speeds, "states": states}
 
@@ -202,7 +212,14 @@ def _thinned(raw: RawRun, sample_step: float) -> RawRun:
     def pick(values: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
         return {name: value[kept] for name, value in values.items()}
 
-    return replace(raw, times=raw.times[kept], angles=pick(raw.angles), speeds=pick(raw.speeds), states=pick(raw.states))
+    return replace(
+        raw,
+        times=raw.times[kept],
+        angles=pick(raw.angles),
+        speeds=pick(raw.speeds),
+        states=pick(raw.states),
+        accelerations=pick(raw.accelerations),
+    )
 
 
 def run_moment(network: Network, raw: RawRun) -> Moment:
@@ -256,7 +273,10 @@ def _response(
         units[channel.name], docs[channel.name] = channel.unit, channel.doc
         if channel.slope:
             slopes[channel.name] = channel.slope
-    rates = _read_all(network.accelerations, moment)
+    rates = _rates(network, raw, moment)
+    values |= {f"{body.name}_acceleration": rates[body.name] for body in network.bodies if body.lateral}
+    units |= {f"{body.name}_acceleration": f"{body.unit}/s^2" for body in network.bodies if body.lateral}
+    docs |= {f"{body.name}_acceleration": f"acceleration of {body.name}" for body in network.bodies if body.lateral}
     for place, node in network.places.items():
         if node in senses and f"{place}.speed" in values:
             name = f"{place}.acceleration"
@@ -285,13 +305,21 @@ def _response(
     )
 
 
+def _rates(network: Network, raw: RawRun, moment: Moment) -> dict[str, FloatArray]:
+    """Acceleration of each body (from the engine where masses couple them) and rate of each state."""
+    if not raw.accelerations:
+        return _read_all(network.accelerations, moment)
+    states = {equation.state: read_over(equation.rate, moment) for equation in network.state_equations()}
+    return {**raw.accelerations, **states}
+
+
 def _difference(network: Network, coarse: RawRun, fine: RawRun) -> dict[str, float]:
     """Largest difference of two runs over the largest value, per body (angle and speed) and state.
 
     Compared at the times of the coarser run: with half the step they are times of both.
     """
     moment = run_moment(network, fine)
-    slopes = _read_all(network.accelerations, moment)
+    slopes = _rates(network, fine, moment)
     result = {}
 
     def compare(name: str, rough: FloatArray, good: FloatArray, slope: FloatArray) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from hdrive_mbs.network.draft import Draft
+from hdrive_mbs.network.rigid_mass import NOTHING, RigidMass
 from hdrive_mbs.quantities import Described
 
 
@@ -17,11 +18,20 @@ class Flange:
     name : "" for the only flange of a part, else its name ("a", "wave_generator")
     inertia : what the part adds there [kg m^2]
     optional : held by the ground when nothing is connected to it
+    lateral : whether the place moves across the axis too; then ``mass`` is what the part adds there
+    is_rotor : whether that mass makes the place a rigid body with all its couplings (unbalance)
+    axial : distance from the part's first flange along the shaft [m]
+    free : may stay unconnected (the end of a shaft that has mass)
     """
 
     name: str
     inertia: float = 0.0
     optional: bool = False
+    lateral: bool = False
+    mass: RigidMass = NOTHING
+    is_rotor: bool = False
+    axial: float = 0.0
+    free: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,4 +1,8 @@
-"""Network -> Exudyn system of Node1D/Mass1D, coordinate spring-dampers and generic couplings.
+"""Network -> Exudyn system: Node1D/Mass1D for what turns or moves along one coordinate, rigid bodies for rotors,
+coordinate spring-dampers, generic couplings, and constant matrices for shaft sections and bearing coefficients.
+
+The spin of a rotor is kept in the true sense in the engine (a rigid body turns about +z) and counted
+forward outside, like every other angle.
 
 A first-order state z is the *velocity* of a unit-mass coordinate: 1 * dz/dt = rate.  It is exact in
 every integrator, needs no Python callback and no GenericODE1; the coordinate itself (the integral
@@ -17,13 +21,14 @@ import numpy as np
 from exudyn import itemInterface as item  # noqa: N813
 
 from hdrive_mbs.engine.guard import check_connector, check_coupling, check_scalar
-from hdrive_mbs.engine.records import CoupledRecord, ScalarRecord, make_record
+from hdrive_mbs.engine.records import CoupledRecord, ScalarRecord, make_records, oriented
 from hdrive_mbs.engine.symbolic import LARGEST_LAW, SYMBOLIC_VECTOR_LIMIT, connector_function, generic_function, written_out
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Expression, variables
 from hdrive_mbs.expression.python_code import scalar_function
+from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment
-from hdrive_mbs.network.network import Network
+from hdrive_mbs.network.network import Body, Network, Rotor
 
 PLAIN = "ObjectConnectorCoordinateSpringDamper"
 GEARED = "ObjectConnectorCoordinateSpringDamperExt"
@@ -51,7 +56,10 @@ class Assembly:
     container: Any
     bodies: tuple[str, ...]
     states: tuple[str, ...]
-    sensors: dict[str, tuple[Any, Any]]
+    sensors: dict[str, tuple[Any, ...]]
+    """First coordinate of a node -> sensors of its coordinates, speeds and (with rotors) accelerations."""
+    signs: dict[str, int]
+    """Sense of each coordinate in the engine against the forward one."""
     lowered: list[Lowered] = field(default_factory=list)
     kept: list[Any] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
@@ -59,8 +67,8 @@ class Assembly:
 
     def set_initial(self, angles: Mapping[str, float], speeds: Mapping[str, float], states: Mapping[str, float]) -> None:
         """Initial forward angles and speeds of the bodies and values of the states."""
-        q = [angles.get(name, 0.0) for name in self.bodies] + [0.0] * len(self.states)
-        v = [speeds.get(name, 0.0) for name in self.bodies]
+        q = [self.signs[name] * angles.get(name, 0.0) for name in self.bodies] + [0.0] * len(self.states)
+        v = [self.signs[name] * speeds.get(name, 0.0) for name in self.bodies]
         v += [states.get(state.name, state.initial) for state in self.network.states]
         self.mbs.systemData.SetODE2Coordinates(q, exu.ConfigurationType.Initial)
         self.mbs.systemData.SetODE2Coordinates_t(v, exu.ConfigurationType.Initial)
@@ -80,11 +88,14 @@ def assemble(network: Network, *, lowering: str = "symbolic", guard: bool = True
         raise ParameterError(f"lowering = {lowering!r}: must be 'symbolic' or 'python'.")
     builder = _Builder(network, lowering, guard)
     for element in network.elements:
-        record = make_record(element, network)
-        if isinstance(record, ScalarRecord):
-            builder.add_scalar(record)
-        else:
-            builder.add_coupled(record)
+        if isinstance(element, MatrixElement):
+            builder.add_matrix(element)
+            continue
+        for record in make_records(element, network):
+            if isinstance(record, ScalarRecord):
+                builder.add_scalar(record)
+            else:
+                builder.add_coupled(oriented(record, builder.signs))
     return builder.finish()
 
 
@@ -98,22 +109,88 @@ class _Builder:
         self.failures: list[str] = []
         self.nodes: dict[str, Any] = {}
         self.markers: dict[str, Any] = {}
+        self.signs = {body.name: 1 for body in network.bodies}
+        self.owner = {name: rotor for rotor in network.rotors for name in rotor.coordinates}
+        self.signs |= {rotor.coordinates[-1]: rotor.sense for rotor in network.rotors}
+        self.carried = self._masses_in_matrices()
+        made: set[str] = set()
         for body in network.bodies:
-            self._add_node(body.name, body.inertia)
+            rotor = self.owner.get(body.name)
+            if rotor is None:
+                self._add_node(body.name, 0.0 if body.name in self.carried else body.inertia)
+            elif rotor.name not in made:
+                made.add(rotor.name)
+                self._add_rotor(rotor)
         for state in network.states:
             self._add_node(state.name, 1.0)
         ground = self.mbs.AddNode(item.NodePointGround())
         self.ground = self.mbs.AddMarker(item.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
 
+    def _masses_in_matrices(self) -> dict[str, tuple[str, Body]]:
+        """Bodies whose mass the first matrix that touches them carries: coordinate -> (matrix, body)."""
+        free = {body.name: body for body in self.network.bodies if body.lateral and body.name not in self.owner}
+        carried: dict[str, tuple[str, Body]] = {}
+        for element in self.network.matrices:
+            for name in element.coordinates:
+                if name in free and name not in carried:
+                    carried[name] = (element.name, free[name])
+        return carried
+
     def _add_node(self, name: str, mass: float) -> None:
         node = self.mbs.AddNode(item.Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[0.0]))
-        self.mbs.AddObject(item.Mass1D(nodeNumber=node, mass=mass))
+        if mass > 0.0:
+            self.mbs.AddObject(item.Mass1D(nodeNumber=node, mass=mass))
         self.nodes[name] = node
         self.markers[name] = self.mbs.AddMarker(item.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
 
+    def _add_rotor(self, rotor: Rotor) -> None:
+        node = self.mbs.AddNode(item.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * 6, initialVelocities=[0.0] * 6))
+        tensor = np.array(rotor.body.inertia)
+        six = [tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[1, 2], tensor[0, 2], tensor[0, 1]]
+        self.mbs.AddObject(
+            item.ObjectRigidBody(nodeNumber=node, mass=rotor.body.mass, centerOfMass=list(rotor.body.centre), inertia=[float(v) for v in six])
+        )
+        for k, name in enumerate(rotor.coordinates):
+            self.nodes[name] = node
+            self.markers[name] = self.mbs.AddMarker(item.MarkerNodeCoordinate(nodeNumber=node, coordinate=k))
+
+    # -- constant matrices -------------------------------------------------------------------------
+    def add_matrix(self, element: MatrixElement) -> None:
+        names = self._whole_nodes(element.coordinates)
+        at = [names.index(name) for name in element.coordinates]
+        mass, damping, stiffness = (np.zeros((len(names), len(names))) for _ in range(3))
+        for target, source in ((mass, element.mass), (damping, element.damping), (stiffness, element.stiffness)):
+            target[np.ix_(at, at)] = source
+        for name in element.coordinates:
+            matrix, body = self.carried.get(name, ("", None))
+            if body is not None and matrix == element.name:
+                mass[names.index(name), names.index(name)] += body.inertia
+        self.mbs.AddObject(
+            item.ObjectGenericODE2(
+                nodeNumbers=self._unique_nodes(names),
+                massMatrix=mass,
+                stiffnessMatrix=stiffness,
+                dampingMatrix=damping,
+                forceVector=[0.0] * len(names),
+            )
+        )
+        self.lowered.append(Lowered(element.name, "native"))
+
+    def _whole_nodes(self, names: Sequence[str]) -> tuple[str, ...]:
+        """The names with all six coordinates of every rotor among them, as the engine's nodes have them."""
+        whole: dict[str, None] = {}
+        for name in names:
+            whole |= dict.fromkeys(self.owner[name].coordinates if name in self.owner else (name,))
+        return tuple(whole)
+
+    def _unique_nodes(self, names: Sequence[str]) -> list[Any]:
+        """Nodes of these coordinates, each once."""
+        return list({int(self.nodes[name]): self.nodes[name] for name in names}.values())
+
     # -- one displacement --------------------------------------------------------------------------
     def add_scalar(self, record: ScalarRecord) -> None:
-        (last, factor), *rest = reversed(list(record.factors.items()))
+        factors = {name: self.signs.get(name, 1) * value for name, value in record.factors.items()}
+        (last, factor), *rest = reversed(list(factors.items()))
         first, other = (rest[0][0], rest[0][1]) if rest else ("ground", -1.0)
         markers = [self.markers[first] if rest else self.ground, self.markers[last]]
         unit = factor == 1.0 and (not rest or other == -1.0)
@@ -179,7 +256,7 @@ class _Builder:
         for name in sorted(variables(*outputs.values())):
             if name != "t":
                 seen[name.partition(":")[2]] = None
-        return tuple(seen)
+        return self._whole_nodes(tuple(seen))
 
     def _size(self, outputs: Mapping[str, Expression]) -> int:
         return len(self._names(outputs))
@@ -206,7 +283,7 @@ class _Builder:
         self._add_object(names, function)
 
     def _add_plain(self, record: CoupledRecord) -> None:
-        names = tuple(dict.fromkeys([*record.targets, *record.depends]))
+        names = self._whole_nodes([*record.targets, *record.depends])
         states = {state.name for state in self.network.states}
         plain: Callable[[Moment], dict[str, Any]] = record.plain
 
@@ -234,7 +311,7 @@ class _Builder:
         self.kept.append(function)
         self.mbs.AddObject(
             item.ObjectGenericODE2(
-                nodeNumbers=[self.nodes[name] for name in names],
+                nodeNumbers=self._unique_nodes(names),
                 massMatrix=zero,
                 stiffnessMatrix=zero,
                 dampingMatrix=zero,
@@ -268,13 +345,16 @@ class _Builder:
         )
 
     def finish(self) -> Assembly:
-        kinds = (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
+        kinds = [exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t]
+        if self.network.is_coupled:
+            kinds.append(exu.OutputVariableType.Coordinates_tt)
+        first = {int(node): name for name, node in reversed(self.nodes.items())}
         sensors = {
             name: tuple(
-                self.mbs.AddSensor(item.SensorNode(nodeNumber=node, outputVariableType=kind, storeInternal=True, writeToFile=False))
+                self.mbs.AddSensor(item.SensorNode(nodeNumber=self.nodes[name], outputVariableType=kind, storeInternal=True, writeToFile=False))
                 for kind in kinds
             )
-            for name, node in self.nodes.items()
+            for name in reversed(first.values())
         }
         self.mbs.Assemble()
         return Assembly(
@@ -284,6 +364,7 @@ class _Builder:
             bodies=tuple(body.name for body in self.network.bodies),
             states=tuple(state.name for state in self.network.states),
             sensors=sensors,
+            signs=self.signs,
             lowered=self.lowered,
             kept=self.kept,
             failures=self.failures,

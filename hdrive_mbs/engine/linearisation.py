@@ -43,6 +43,8 @@ def linearise(assembly: Assembly, *, angles: Mapping[str, float], speeds: Mappin
     settings.staticSolver.newton.numericalDifferentiation.forODE2 = True
     mass, stiffness, damping = (np.asarray(item, float) for item in assembly.mbs.ComputeLinearizedSystem(settings)[:3])
     n, m = len(assembly.bodies), len(assembly.states)
+    signs = np.array([assembly.signs[name] for name in assembly.bodies] + [1] * m, float)
+    mass, stiffness, damping = (np.outer(signs, signs) * item for item in (mass, stiffness, damping))
     body, state = slice(0, n), slice(n, n + m)
     inverse = np.linalg.inv(mass[body, body])
     matrix = np.zeros((2 * n + m, 2 * n + m))

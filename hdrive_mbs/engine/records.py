@@ -9,6 +9,7 @@ import numpy as np
 
 from hdrive_mbs.errors import HdriveError, LawError
 from hdrive_mbs.expression import Expression, TraceError, Value, derivative, evaluate, record, trace, variable, variables
+from hdrive_mbs.network.coupling import Coupling
 from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, StateRate
 from hdrive_mbs.network.moment import Moment, recording_moment
 from hdrive_mbs.network.network import Network
@@ -96,10 +97,89 @@ def _looked_at(name: str, function: Callable[[Moment], Iterable[Value]]) -> tupl
     return tuple(seen)
 
 
-def make_record(element: Element, network: Network) -> ScalarRecord | CoupledRecord:
-    """The simplest record of an element: scalar if its law allows, else coupled."""
+def make_records(element: Element, network: Network) -> list[ScalarRecord | CoupledRecord]:
+    """The simplest records of an element: scalar if its law allows, else coupled.
+
+    A coupling is taken apart: each force that depends on its own stretch alone becomes a scalar record.
+    """
+    if isinstance(element, Coupling):
+        return [record for part in _taken_apart(element) for record in make_records(part, network)]
     scalar = _scalar(element, network)
-    return scalar if scalar is not None else _coupled(element, network)
+    return [scalar if scalar is not None else _coupled(element, network)]
+
+
+def _taken_apart(coupling: Coupling) -> list[Element]:
+    """Connections for the forces along one stretch, and what is left as one element."""
+    s = {key: variable(f"s:{key}") for key in coupling.stretches}
+    v = {key: variable(f"v:{key}") for key in coupling.stretches}
+    traced: dict[str, Value] = {}
+
+    def total(moment: Moment) -> Value:
+        traced.update(coupling.forces(moment, s, v))
+        return 0.0
+
+    try:
+        trace(total, recording_moment())
+        recorded = {key: record(value) for key, value in traced.items()}
+    except TraceError:
+        return [_Rest(coupling, None)]
+    single = {key for key, item in recorded.items() if variables(item) <= {"t", f"s:{key}", f"v:{key}"}}
+    parts: list[Element] = [_along(coupling, key, recorded[key]) for key in recorded if key in single]
+    rest = {key: item for key, item in recorded.items() if key not in single}
+    return [*parts, _Rest(coupling, rest)] if rest else parts
+
+
+def _along(coupling: Coupling, key: str, force: Expression) -> Connection:
+    def law(moment: Moment, x: Value, v: Value) -> Value:
+        return evaluate(force, {"t": moment.time, f"s:{key}": x, f"v:{key}": v})
+
+    return Connection(f"{coupling.name}_{key}", dict(coupling.stretches[key]), law)
+
+
+@dataclass(frozen=True)
+class _Rest:
+    """What is left of a coupling: the named directions, or all of it where it could not be recorded."""
+
+    coupling: Coupling
+    directions: Mapping[str, Expression] | None
+
+    @property
+    def name(self) -> str:
+        return self.coupling.name
+
+    def contribution(self, moment: Moment) -> dict[str, Value]:
+        if self.directions is None:
+            return self.coupling.contribution(moment)
+        result: dict[str, Value] = {}
+        forces = self.coupling.values(moment)
+        for key in self.directions:
+            for name, factor in self.coupling.stretches[key].items():
+                result[name] = result.get(name, 0.0) - factor * forces[key]
+        return result
+
+
+def oriented(coupled: CoupledRecord, signs: Mapping[str, int]) -> CoupledRecord:
+    """The record with the engine's sense of each coordinate in place of the forward one."""
+    turned = {name for name in (*coupled.targets, *coupled.depends) if signs.get(name, 1) < 0}
+    if not turned:
+        return coupled
+    given = {f"{kind}:{name}": -variable(f"{kind}:{name}") for name in turned for kind in ("angle", "speed")}
+
+    def sensed(values: Mapping[str, Value]) -> dict[str, Value]:
+        return {name: -value if name in turned else value for name, value in values.items()}
+
+    def plain(moment: Moment) -> dict[str, Value]:
+        forward = Moment(time=moment.time, angles=sensed(moment.angles), speeds=sensed(moment.speeds), states=moment.states)
+        return sensed(coupled.plain(forward))
+
+    def substituted(expression: Expression) -> Expression:
+        known = {name: given.get(name, variable(name)) for name in variables(expression)}
+        return record(evaluate(expression, known))
+
+    outputs = None
+    if coupled.outputs is not None:
+        outputs = {name: record(value) for name, value in sensed({k: substituted(e) for k, e in coupled.outputs.items()}).items()}
+    return CoupledRecord(coupled.name, coupled.targets, outputs, coupled.depends, plain, coupled.reason)
 
 
 def _scalar_form(element: Element) -> tuple[dict[str, float], Callable[[Moment, Value, Value], Value]] | None:

@@ -8,7 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import exudyn as exu
@@ -23,13 +23,19 @@ FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[float], None]
 """Called now and then with the simulated time reached [s]."""
 
+DENSE_LIMIT = 60
+"""Coordinates up to which the dense solver of exudyn is the faster one."""
+
 STUCK = 1e-9
 """A run that gets on by less than this share of its duration within 4096 steps is given up."""
 
 
 @dataclass(frozen=True)
 class RawRun:
-    """What came out of the engine: forward coordinates on the solver's own times."""
+    """What came out of the engine: forward coordinates on the solver's own times.
+
+    accelerations : where coordinates are coupled by their masses (rotor lines), else empty
+    """
 
     times: FloatArray
     angles: Mapping[str, FloatArray]
@@ -39,6 +45,7 @@ class RawRun:
     steps: int
     rejected: int
     seconds: float
+    accelerations: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
 @contextmanager
@@ -94,7 +101,9 @@ def run(
     settings.timeIntegration.verboseMode = 0
     settings.timeIntegration.startTime = 0.0
     settings.timeIntegration.endTime = duration
-    settings.timeIntegration.explicit.computeEndOfStepAccelerations = False
+    settings.timeIntegration.explicit.computeEndOfStepAccelerations = assembly.network.is_coupled
+    if len(assembly.bodies) > DENSE_LIMIT:
+        settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     solver_type = solver.configure(settings, duration)
     error = ""
     assembly.failures.clear()
@@ -172,13 +181,12 @@ def _watch(
 
 def _collect(assembly: Assembly, solver: Solver, duration: float, error: str, cancelled: bool, seconds: float) -> RawRun:
     mbs = assembly.mbs
-    columns = {name: [np.asarray(mbs.GetSensorStoredData(sensor)) for sensor in pair] for name, pair in assembly.sensors.items()}
+    columns = {name: [np.asarray(mbs.GetSensorStoredData(sensor)) for sensor in group] for name, group in assembly.sensors.items()}
     times = next(iter(columns.values()))[0][:, 0]
     # exudyn repeats the last sample when the end falls on a write time
     keep = np.concatenate(([True], np.diff(times) > 0.0)) if len(times) else np.zeros(0, bool)
     times = times[keep]
-    q = {name: pair[0][keep, 1] for name, pair in columns.items()}
-    v = {name: pair[1][keep, 1] for name, pair in columns.items()}
+    q, v, a = (_coordinates(assembly, columns, kind, keep) for kind in range(3))
     finite = np.ones(len(times), bool)
     for values in (*q.values(), *v.values()):
         finite &= np.isfinite(values)
@@ -208,4 +216,16 @@ def _collect(assembly: Assembly, solver: Solver, duration: float, error: str, ca
         steps=int(iteration.currentStepIndex) - 1,
         rejected=int(iteration.rejectedAutomaticStepSizeSteps),
         seconds=seconds,
+        accelerations={name: a[name] for name in assembly.bodies} if a else {},
     )
+
+
+def _coordinates(assembly: Assembly, columns: Mapping[str, list[FloatArray]], kind: int, keep: FloatArray) -> dict[str, FloatArray]:
+    """Coordinates (0), speeds (1) or accelerations (2) by name, counted forward."""
+    owner = {rotor.coordinates[0]: rotor.coordinates for rotor in assembly.network.rotors}
+    found: dict[str, FloatArray] = {}
+    for name, group in columns.items():
+        if kind < len(group):
+            for k, coordinate in enumerate(owner.get(name, (name,)), start=1):
+                found[coordinate] = assembly.signs.get(coordinate, 1) * group[kind][keep, k]
+    return found

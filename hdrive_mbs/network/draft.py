@@ -1,7 +1,8 @@
 """The network while it is being built: parts add to it, effects change it.
 
 A part or effect of a user's own needs only these methods: ``body``, ``connection``,
-``add_torque``, ``add_connection``, ``add_state``, ``prescribe`` and ``add_channel``.
+``add_torque``, ``add_connection``, ``add_state``, ``prescribe`` and ``add_channel``; on rotor lines
+also ``station``, ``add_station``, ``add_coordinate``, ``add_matrix`` and ``add_coupling``.
 """
 
 from __future__ import annotations
@@ -9,11 +10,25 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+import numpy.typing as npt
+
 from hdrive_mbs.errors import LawError, PlaceError, SceneError, unknown_place
 from hdrive_mbs.expression import TraceError, Value, gradient
+from hdrive_mbs.network.coupling import Coupling, Forces
 from hdrive_mbs.network.elements import AppliedTorque, Claim, Connection, Element, KinematicTerm, StateRate
+from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment
-from hdrive_mbs.network.network import Body, Channel, Motion, Network, State
+from hdrive_mbs.network.network import Body, Channel, Motion, Network, Rotor, State
+from hdrive_mbs.network.rigid_mass import NOTHING, RigidMass
+from hdrive_mbs.network.station import (
+    LATERAL,
+    Station,
+    coordinate_names,
+    station_bodies,
+    station_channels,
+    weights,
+)
 
 Torque = Callable[[Moment, Value, Value], Value]
 
@@ -76,22 +91,37 @@ class Reading:
         return self.channel.read(moment)
 
 
+FloatArray = npt.NDArray[np.float64]
+
+
 @dataclass(frozen=True)
 class Node:
-    """A place where flanges are rigidly connected."""
+    """A place where flanges are rigidly connected.
+
+    inertia : about the axis, of all parts there [kg m^2]
+    lateral : whether it moves across the axis too; then ``mass`` is its body and ``position`` [m] lies on the axis
+    is_rotor : a rigid body with all its couplings, not a station with small tilts
+    """
 
     name: str
     inertia: float
     sense: int
     ratio: float
+    lateral: bool = False
+    mass: RigidMass = NOTHING
+    is_rotor: bool = False
+    position: float = 0.0
 
 
 class Draft:
     """A network under construction."""
 
-    def __init__(self, nodes: dict[str, Node], flanges: dict[str, str]) -> None:
+    def __init__(self, nodes: dict[str, Node], flanges: dict[str, str], offsets: dict[str, float] | None = None) -> None:
         self._nodes = nodes
         self._flanges = flanges  # flange path -> node name
+        self._offsets = offsets or {}  # flange path -> axial distance from the node [m]
+        self._bodies: list[Body] = []
+        self._gravity = (0.0, 0.0, 0.0)
         self._motions: dict[str, Callable[[Value], Value]] = {}
         self._connections: dict[str, ConnectionDraft] = {}
         self._aliases: dict[str, str] = {}  # other names of a connection
@@ -168,6 +198,80 @@ class Draft:
         """A torque(moment, x, dx/dt) that resists along  x = sum(f_i q_i), with its reactions; no twist channels."""
         self._elements.append(Connection(name, dict(factors), torque, (), dissipative))
 
+    # -- rotor lines ----------------------------------------------------------------------------
+    def station(self, place: str, asked_by: str = "This") -> Station:
+        """The place as a station with lateral motion.
+
+        Raises PlaceError when it does not exist or only turns.
+        """
+        node = self.body(place, asked_by)
+        if not node.lateral and node.name != "ground":
+            known = [path for path, name in self._flanges.items() if self._nodes[name].lateral]
+            raise PlaceError(
+                f"{asked_by} needs a place with lateral motion, but {place!r} only turns. Such places: {', '.join(known) or 'none'}."
+            )
+        offset = self._offsets.get(place, 0.0)
+        return Station(node.name, coordinate_names(node.name), offset, node.sense, node.position + offset)
+
+    def add_station(self, name: str, mass: RigidMass, *, like: Station, position: float) -> Station:
+        """A further station inside a part (a node of a shaft with distributed mass), turning like another."""
+        source = self._nodes[like.node]
+        self._nodes[name] = Node(name, 0.0, source.sense, source.ratio, True, mass, False, position)
+        self._flanges[name] = name
+        return Station(name, coordinate_names(name), 0.0, source.sense, position)
+
+    def add_mass(self, station: Station, mass: RigidMass) -> None:
+        """More mass at a station that is already there."""
+        if not station.held:
+            node = self._nodes[station.node]
+            self._nodes[station.node] = replace(node, mass=node.mass + mass.moved(station.offset))
+
+    def add_coordinate(self, name: str, *, inertia: float, unit: str, doc: str) -> str:
+        """A lateral coordinate of a part's own (a housing, a mode): channels name, name_rate and name_acceleration."""
+        self._bodies.append(Body(name, inertia, 1, 0.0, unit, lateral=True))
+        self.add_channel(name, unit, doc, lambda moment: moment.angle(name), slope=f"{name}_rate")
+        rate = f"{name}_acceleration"
+        self.add_channel(f"{name}_rate", f"{unit}/s", f"rate of the {doc}", lambda moment: moment.speed(name), slope=rate)
+        return name
+
+    def add_matrix(
+        self,
+        name: str,
+        stations: tuple[Station, ...],
+        coordinates: tuple[str, ...] = (),
+        *,
+        stiffness: FloatArray,
+        damping: FloatArray | None = None,
+        mass: FloatArray | None = None,
+    ) -> None:
+        """Constant matrices over the 6-vectors of stations (x, y, z, psi, theta, phi in true sense), then coordinates.
+
+        Rows and columns of phi must be zero: torsion is a connection, which effects can change.
+        """
+        names = [name for station in stations for name in station.names] + list(coordinates)
+        arm = np.eye(len(names))
+        for k, station in enumerate(stations):
+            arm[6 * k : 6 * k + 6, 6 * k : 6 * k + 6] = station.arm()
+        zero = np.zeros_like(stiffness)
+        matrices = [arm.T @ np.asarray(item, float) @ arm for item in (zero if mass is None else mass, zero if damping is None else damping, stiffness)]
+        spins = {station.names[5] for station in stations}
+        used = list(dict.fromkeys(item for item in names if item != "ground" and item not in spins))
+        gather = np.array([[float(item == kept) for kept in used] for item in names])
+        made = [gather.T @ item @ gather for item in matrices]
+        self._elements.append(MatrixElement(name, tuple(used), made[0], made[1], made[2]))
+
+    def add_coupling(self, name: str, stretches: dict[str, dict[str, float]], forces: Forces, *, dissipative: bool = False) -> None:
+        """Forces along several stretches that depend on each other, positive when they resist."""
+        self._elements.append(Coupling(name, stretches, forces, dissipative))
+
+    def add_element(self, element: Element) -> None:
+        """Any element: something with a name and contribution(moment)."""
+        self._elements.append(element)
+
+    def set_gravity(self, acceleration: tuple[float, float, float]) -> None:
+        """Gravity for all lateral motion [m/s^2]."""
+        self._gravity = acceleration
+
     def motor_torque(self, place: str, asked_by: str = "This") -> Callable[[Moment], Value]:
         """The torque ``<place>.torque`` that a part puts on its body.
 
@@ -229,7 +333,7 @@ class Draft:
 
         def read(moment: Moment) -> Value:
             acceleration = gradient(gradient(self._motions[node.name]))(moment.time)
-            total: Value = node.inertia * acceleration + 0.0 * moment.time
+            total: Value = (node.inertia + node.mass.polar) * acceleration + 0.0 * moment.time
             for element in self._finished:
                 total = total - element.contribution(moment).get(node.name, 0.0)
             return total
@@ -239,19 +343,28 @@ class Draft:
     # -- the end --------------------------------------------------------------------------------
     def finish(self) -> Network:
         """The network, checked for bodies without inertia."""
-        bodies, motions = [], []
+        bodies: list[Body] = []
+        motions: list[Motion] = []
+        rotors: list[Rotor] = []
         for node in self._nodes.values():
+            motion = self._motions.get(node.name)
             if node.name == "ground":
                 motions.append(Motion("ground", _at_rest, 1, 0.0))
-            elif node.name in self._motions:
-                motions.append(Motion(node.name, self._motions[node.name], node.sense, node.ratio))
-            elif node.inertia > 0.0:
+                continue
+            if motion is not None:
+                motions.append(Motion(node.name, motion, node.sense, node.ratio))
+            if node.lateral:
+                self._finish_station(node, bodies, rotors)
+            elif motion is None and node.inertia > 0.0:
                 bodies.append(Body(node.name, node.inertia, node.sense, node.ratio))
-            else:
+            elif motion is None:
                 raise SceneError(
                     f"{node.name!r} has no inertia (0 kg m^2), so its acceleration is undefined. "
                     "Give the part an inertia, put an Inertia there, or connect it rigidly."
                 )
+        bodies += self._bodies
+        self._check_masses(bodies)
+        self._add_weights()
         if not bodies:
             raise SceneError("The scene has no body that can move: every place is held or prescribed.")
         connections = [draft.build() for draft in self._connections.values()]
@@ -262,12 +375,63 @@ class Draft:
                     "Connect one end to another body, or remove it."
                 )
         prescribed = {motion.name: motion for motion in motions}
-        channels = list(self._body_channels(prescribed)) + list(self._connection_channels(connections))
+        channels = list(self._body_channels(prescribed)) + self._station_channels() + list(self._connection_channels(connections))
         channels += self._channels.values()
         elements: tuple[Element, ...] = (*connections, *self._elements)
         self._finished = elements
         resolved = self._resolved(channels)
-        return Network(tuple(bodies), tuple(motions), tuple(self._states.values()), elements, resolved, dict(self._flanges))
+        positions = {place: self._nodes[node].position + self._offsets.get(place, 0.0) for place, node in self._flanges.items() if self._nodes[node].lateral}
+        return Network(
+            tuple(bodies), tuple(motions), tuple(self._states.values()), elements, resolved, dict(self._flanges), tuple(rotors), positions, self._gravity
+        )
+
+    def _finish_station(self, node: Node, bodies: list[Body], rotors: list[Rotor]) -> None:
+        turning = RigidMass(0.0, (0.0, 0.0, 0.0), ((0.0,) * 3, (0.0,) * 3, (0.0, 0.0, node.inertia)))
+        made = station_bodies(
+            node.name, node.mass + turning, node.sense, node.ratio, is_rotor=node.is_rotor, motion=self._motions.get(node.name)
+        )
+        bodies += made.bodies
+        self._elements += made.elements
+        rotors += [made.rotor] if made.rotor else []
+
+    def _check_masses(self, bodies: list[Body]) -> None:
+        """Refuse a coordinate that nothing accelerates."""
+        heavy = {name for item in self._elements if isinstance(item, MatrixElement) for name, value in zip(item.coordinates, np.diag(item.mass), strict=True) if value > 0.0}
+        for body in bodies:
+            if not body.inertia > 0.0 and body.name not in heavy:
+                unit = "kg" if body.unit == "m" else "kg m^2"
+                raise SceneError(
+                    f"{body.name!r} has no inertia ({body.inertia:g} {unit}), so its acceleration is undefined. Give the ring of the "
+                    "bearing mass and moments of inertia, put a Rotor there, or give the shaft a density."
+                )
+
+    def _add_weights(self) -> None:
+        if self._gravity == (0.0, 0.0, 0.0):
+            return
+        for node in self._nodes.values():
+            if node.lateral and node.name != "ground":
+                self._elements += weights(node.name, node.mass, node.sense, self._gravity, node.name not in self._motions)
+        falls = {f".{key}": value for key, value in zip("xyz", self._gravity, strict=True) if value != 0.0}
+        for body in self._bodies:
+            for ending, value in falls.items():
+                if body.unit == "m" and body.name.endswith(ending) and body.inertia > 0.0:
+                    self._elements.append(AppliedTorque(f"{body.name}.weight", body.name, _constant(value * body.inertia)))
+        for element in [item for item in self._elements if isinstance(item, MatrixElement) and item.mass.any()]:
+            field_ = np.array([sum(value for ending, value in falls.items() if name.endswith(ending)) for name in element.coordinates])
+            for name, force in zip(element.coordinates, element.mass @ field_, strict=True):
+                if force != 0.0:
+                    self._elements.append(AppliedTorque(f"{element.name}.weight", name, _constant(float(force))))
+
+    def _station_channels(self) -> list[Channel]:
+        channels: list[Channel] = []
+        for place, node_name in self._flanges.items():
+            node = self._nodes[node_name]
+            if node_name == "ground" or not node.lateral or (place != node_name and place.endswith((".a", ".b"))):
+                continue
+            station = self.station(place)
+            centre = node.mass.centre[:2] if node.is_rotor and place == node_name and any(node.mass.centre[:2]) else None
+            channels += station_channels(place, {key: station.stretch(key) for key in LATERAL}, centre, node_name, node.sense)
+        return channels
 
     def _resolved(self, channels: list[Channel]) -> tuple[Channel, ...]:
         """The channels with those that read others connected to them."""
@@ -313,6 +477,10 @@ class Draft:
                 Channel(f"{name}.torque", "N m", f"torque through {name}, positive when driving", connection.value),
             ]
         return channels
+
+
+def _constant(value: float) -> Callable[[Moment], Value]:
+    return lambda moment: value + 0.0 * moment.time
 
 
 def _at_rest(time: Value) -> Value:

@@ -1,30 +1,53 @@
-"""The assembled equations: J_i dw_i/dt = sum of torques, dz/dt = rates, prescribed motions given."""
+"""The assembled equations: M(q) q'' = forces, dz/dt = rates, prescribed motions given."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from hdrive_mbs.expression import Value, gradient
 from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, StateRate
+from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.rigid_mass import RigidMass
+from hdrive_mbs.network.rigid_motion import forces_of_motion, kinetic_energy, mass_matrix
 
 
 @dataclass(frozen=True)
 class Body:
-    """A rotating inertia.
+    """A coordinate with inertia: the turning of a place, or one lateral motion of a station.
 
-    inertia : kg m^2 (all parts that are rigidly connected at this place)
+    inertia : kg m^2, or kg where unit is m (all parts that are rigidly connected at this place)
     sense : +1 or -1, true sense of rotation of the forward coordinate about the common axis
-    ratio : ideal speed of this body per speed of the driving motor, in true sense
+    ratio : ideal speed of this body per speed of the driving motor, in true sense (0 for lateral motions)
+    unit : unit of the coordinate, "rad" or "m"
+    lateral : whether it is a lateral, axial or tilting motion and not the turning of a place
     """
 
     name: str
     inertia: float
     sense: int
     ratio: float
+    unit: str = "rad"
+    lateral: bool = False
+
+
+@dataclass(frozen=True)
+class Rotor:
+    """A rigid body with six coordinates [x, y, z, psi, theta, phi], rotation 1-2-3 (seed M (2)).
+
+    coordinates : their names; the last, the spin, counts forward
+    body : mass, centre of mass and inertia tensor in the frame that turns with it
+    """
+
+    name: str
+    coordinates: tuple[str, ...]
+    body: RigidMass
+    sense: int
 
 
 @dataclass(frozen=True)
@@ -71,6 +94,10 @@ class Network:
     elements: tuple[Element, ...]
     channels: tuple[Channel, ...]
     places: Mapping[str, str]
+    rotors: tuple[Rotor, ...] = ()
+    positions: Mapping[str, float] = field(default_factory=dict)
+    """Axial position of each place on the shaft [m], from the lengths of the sections."""
+    gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def moment(self, time: Value, angles: Mapping[str, Value], speeds: Mapping[str, Value], states: Mapping[str, Value]) -> Moment:
         """A moment in which the prescribed motions are filled in."""
@@ -91,20 +118,82 @@ class Network:
         return total
 
     def accelerations(self, moment: Moment) -> dict[str, Value]:
-        """Forward angular acceleration of each body [rad/s^2] and the rate of each state."""
+        """Forward acceleration of each coordinate [rad/s^2, m/s^2] and the rate of each state.
+
+        With rotors or matrices of mass the equations M(q) q'' = Q - h(q, q') are solved, on arrays or numbers.
+        """
         total = self.torques(moment)
-        return {
-            **{body.name: total[body.name] / body.inertia for body in self.bodies},
-            **{state.name: total[state.name] for state in self.states},
-        }
+        rates = {state.name: total[state.name] for state in self.states}
+        if not self.is_coupled:
+            return {**{body.name: total[body.name] / body.inertia for body in self.bodies}, **rates}
+        names = [body.name for body in self.bodies]
+        index = {name: k for k, name in enumerate(names)}
+        count = np.broadcast_shapes(*(np.shape(total[name]) for name in names), np.shape(moment.time))
+        force = np.stack([np.broadcast_to(np.asarray(total[name], float), count) for name in names], axis=-1)
+        mass = np.broadcast_to(self.constant_mass, (*count, len(names), len(names))).copy()
+        for rotor in self.rotors:
+            at = [index[name] for name in rotor.coordinates]
+            q, v = self._true(rotor, moment)
+            sense = np.array([1.0] * 5 + [float(rotor.sense)])
+            mass[..., np.ix_(at, at)[0], np.ix_(at, at)[1]] += mass_matrix(rotor.body, q) * np.outer(sense, sense)
+            force[..., at] -= sense * forces_of_motion(rotor.body, q, v)
+        solved = np.linalg.solve(mass, force[..., None])[..., 0]
+        return {**{name: solved[..., k] for k, name in enumerate(names)}, **rates}
+
+    def _true(self, rotor: Rotor, moment: Moment) -> tuple[list[Value], list[Value]]:
+        """Coordinates and speeds of a rotor in the true sense."""
+        senses = (1, 1, 1, 1, 1, rotor.sense)
+        q = [sense * moment.angle(name) for sense, name in zip(senses, rotor.coordinates, strict=True)]
+        v = [sense * moment.speed(name) for sense, name in zip(senses, rotor.coordinates, strict=True)]
+        return q, v
+
+    @property
+    def matrices(self) -> tuple[MatrixElement, ...]:
+        """The elements with constant matrices."""
+        return tuple(element for element in self.elements if isinstance(element, MatrixElement))
+
+    @cached_property
+    def is_coupled(self) -> bool:
+        """Whether accelerations depend on each other: rotors, or matrices of mass."""
+        return bool(self.rotors) or any(element.mass.any() for element in self.matrices)
+
+    @cached_property
+    def constant_mass(self) -> npt.NDArray[np.float64]:
+        """Mass matrix over the bodies [kg, kg m^2] without the rotors."""
+        index = {body.name: k for k, body in enumerate(self.bodies)}
+        owned = {name for rotor in self.rotors for name in rotor.coordinates}
+        mass = np.diag([0.0 if body.name in owned else body.inertia for body in self.bodies])
+        for element in self.matrices:
+            at = [index[name] for name in element.coordinates]
+            mass[np.ix_(at, at)] += element.mass
+        return mass
 
     def kinetic_energy(self, moment: Moment) -> Value:
-        """Sum of J w^2 / 2 [J]."""
-        return sum(0.5 * body.inertia * moment.speed(body.name) ** 2 for body in self.bodies)
+        """Sum over bodies, rotors and matrices of mass [J]."""
+        owned = {name for rotor in self.rotors for name in rotor.coordinates}
+        free = [body for body in self.bodies if body.name not in owned]
+        total = sum(0.5 * body.inertia * moment.speed(body.name) ** 2 for body in free)
+        total = total + sum(element.kinetic(moment) for element in self.matrices if element.mass.any())
+        return total + sum(kinetic_energy(rotor.body, *self._true(rotor, moment)) for rotor in self.rotors)
 
     def power_taken(self, moment: Moment) -> dict[str, Value]:
         """Power that each connection or torque takes from the bodies [W], by element name."""
-        return {element.name: element.power(moment) for element in self.elements if isinstance(element, (Connection, AppliedTorque))}
+        return {element.name: element.power(moment) for element in self.elements if hasattr(element, "power")}
+
+    @cached_property
+    def is_lateral(self) -> bool:
+        """Whether anything moves across the axis."""
+        return any(body.lateral for body in self.bodies)
+
+    def turning(self) -> Network:
+        """The torsional network alone: what turns, and the elements that touch nothing else."""
+        if not self.is_lateral:
+            return self
+        lateral = {body.name for body in self.bodies if body.lateral}
+        lateral |= {name for rotor in self.rotors for name in rotor.coordinates[:5]}
+        kept = tuple(element for element in self.elements if not _touches(element, lateral))
+        bodies = tuple(body for body in self.bodies if not body.lateral)
+        return replace(self, bodies=bodies, elements=kept, rotors=(), channels=())
 
     @property
     def motions_drive(self) -> bool:
@@ -136,3 +225,13 @@ class Network:
             {body.name: draw() for body in self.bodies},
             {state.name: draw() for state in self.states},
         )
+
+
+def _touches(element: Element, lateral: set[str]) -> bool:
+    """Whether an element acts on or along one of these coordinates (matrices and couplings of rotor lines always do)."""
+    if isinstance(element, Connection):
+        names = {*element.factors, *(name for term in element.terms for name in term.factors)}
+        return not lateral.isdisjoint(names)
+    if isinstance(element, AppliedTorque):
+        return element.coordinate in lateral
+    return not isinstance(element, StateRate)

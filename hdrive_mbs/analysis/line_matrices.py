@@ -1,0 +1,161 @@
+"""Mass, damping and stiffness of a whole line for small motions about a state of steady rotation.
+
+Everything is seen from the fixed frame.  Shaft sections and bearing coefficients enter as they are; rotors enter
+balanced and upright, with gyroscopic moments (the exact equations linearised, so whirl comes out in the inertial
+frame); every other law is differentiated once and evaluated at each state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.expression import Expression, TraceError, Value, derivative, evaluate, record, trace, variables
+from hdrive_mbs.network.circulation import Circulation
+from hdrive_mbs.network.coupling import Gyroscope
+from hdrive_mbs.network.elements import Element, StateRate
+from hdrive_mbs.network.matrix_element import MatrixElement
+from hdrive_mbs.network.moment import Moment, recording_moment
+from hdrive_mbs.network.network import Network
+from hdrive_mbs.network.rigid_motion import mass_matrix
+
+FloatArray = npt.NDArray[np.float64]
+
+_KINDS = ("angle", "speed")
+
+
+@dataclass(frozen=True, eq=False)
+class LineSystem:
+    """M q'' + D q' + K q = 0 over the named coordinates (spins count forward), each (n, n)."""
+
+    names: tuple[str, ...]
+    mass: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
+
+
+@dataclass(frozen=True)
+class _Slope:
+    """d(force on row)/d(coordinate of column): an expression of the state."""
+
+    row: int
+    column: int
+    kind: str
+    value: Expression
+
+
+class LineMatrices:
+    """The linearised line, built once and evaluated at many states.
+
+    First-order states (a servo's integral, a hysteresis) are held at their values.
+    """
+
+    def __init__(self, network: Network) -> None:
+        self.network = network
+        self.names = tuple(body.name for body in network.bodies)
+        self._index = {name: k for k, name in enumerate(self.names)}
+        n = len(self.names)
+        self.mass = network.constant_mass.copy()
+        self._damping, self._stiffness = np.zeros((n, n)), np.zeros((n, n))
+        self._spinning: list[tuple[str, str, FloatArray]] = []  # spin, "damping" or "stiffness", matrix per unit forward speed
+        self._slopes: list[_Slope] = []
+        self._plain: list[Element] = []
+        for rotor in network.rotors:
+            at = [self._index[name] for name in rotor.coordinates]
+            sense = np.array([1.0] * 5 + [float(rotor.sense)])
+            self.mass[np.ix_(at, at)] += mass_matrix(rotor.body.balanced(), [0.0] * 6) * np.outer(sense, sense)
+            self._add_gyroscope(rotor.coordinates[3], rotor.coordinates[4], rotor.coordinates[5], rotor.sense * rotor.body.polar)
+        for element in network.elements:
+            self._add(element)
+
+    def _add(self, element: Element) -> None:
+        if isinstance(element, MatrixElement):
+            at = np.ix_(*[[self._index[name] for name in element.coordinates]] * 2)
+            self._damping[at] += element.damping
+            self._stiffness[at] += element.stiffness
+        elif isinstance(element, Gyroscope):
+            self._add_gyroscope(element.psi, element.theta, element.spin, element.polar)
+        elif isinstance(element, Circulation):
+            whole = np.zeros_like(self._stiffness)
+            at = np.ix_(*[[self._index[name] for name in element.coordinates]] * 2)
+            whole[at] = element.matrix
+            self._spinning.append((element.spin, "stiffness", whole))
+        elif not isinstance(element, StateRate):
+            self._add_law(element)
+
+    def _add_gyroscope(self, psi: str, theta: str, spin: str, polar: float) -> None:
+        whole = np.zeros_like(self._damping)
+        a, b = self._index[psi], self._index[theta]
+        whole[a, b], whole[b, a] = polar, -polar
+        self._spinning.append((spin, "damping", whole))
+
+    def _add_law(self, element: Element) -> None:
+        traced: dict[str, Value] = {}
+
+        def total(moment: Moment) -> Value:
+            traced.update(element.contribution(moment))
+            return 0.0
+
+        try:
+            trace(total, recording_moment())
+        except TraceError:
+            self._plain.append(element)
+            return
+        for target, force in traced.items():
+            if target not in self._index:
+                continue
+            recorded = record(force)
+            for name in variables(recorded):
+                kind, _, owner = name.partition(":")
+                if kind in _KINDS and owner in self._index:
+                    self._add_slope(_Slope(self._index[target], self._index[owner], kind, derivative(recorded, name)))
+
+    def _add_slope(self, slope: _Slope) -> None:
+        if variables(slope.value):
+            self._slopes.append(slope)
+            return
+        matrix = self._stiffness if slope.kind == "angle" else self._damping
+        matrix[slope.row, slope.column] -= float(np.asarray(evaluate(slope.value, {})))
+
+    def at(self, angles: Mapping[str, float], speeds: Mapping[str, float], states: Mapping[str, float] | None = None) -> LineSystem:
+        """The matrices at forward angles, speeds and states of the coordinates (time 0)."""
+        damping, stiffness = self._damping.copy(), self._stiffness.copy()
+        moment = self.network.moment(np.float64(0.0), angles, speeds, states or {})
+        for spin, kind, matrix in self._spinning:
+            target = damping if kind == "damping" else stiffness
+            target += float(moment.speed(spin)) * matrix
+        if self._slopes:
+            known: dict[str, Value] = {"t": moment.time}
+            known |= {f"angle:{name}": value for name, value in moment.angles.items()}
+            known |= {f"speed:{name}": value for name, value in moment.speeds.items()}
+            known |= {f"state:{name}": value for name, value in moment.states.items()}
+            for slope in self._slopes:
+                matrix = stiffness if slope.kind == "angle" else damping
+                matrix[slope.row, slope.column] -= float(np.asarray(evaluate(slope.value, known)))
+        for element in self._plain:
+            self._difference(element, moment, damping, stiffness)
+        return LineSystem(self.names, self.mass, damping, stiffness)
+
+    def _difference(self, element: Element, moment: Moment, damping: FloatArray, stiffness: FloatArray) -> None:
+        """Central differences for a law that cannot be recorded."""
+        for matrix, kind in ((stiffness, "angles"), (damping, "speeds")):
+            values = dict(getattr(moment, kind))
+            for name, column in self._index.items():
+                h = 1e-7 * max(1e-2, abs(float(values[name])))
+                sides = []
+                for sign in (1.0, -1.0):
+                    moved = {**values, name: values[name] + sign * h}
+                    there = Moment(**{"time": moment.time, "angles": moment.angles, "speeds": moment.speeds, "states": moment.states, kind: moved})
+                    sides.append(element.contribution(there))
+                for target, up in sides[0].items():
+                    if target in self._index:
+                        matrix[self._index[target], column] -= (float(up) - float(sides[1][target])) / (2.0 * h)
+
+    def forces(self, angles: Mapping[str, float], speeds: Mapping[str, float], states: Mapping[str, float] | None = None) -> FloatArray:
+        """Forces on all coordinates with nothing accelerating [N, N m], shape (n,); of balanced, upright rotors."""
+        moment = self.network.moment(np.float64(0.0), angles, speeds, states or {})
+        total = self.network.torques(moment)
+        return np.array([float(np.asarray(total[name])) for name in self.names])

@@ -1,0 +1,1 @@
+"""Bearing laws, one file each: the force between inner ring and housing."""

@@ -1,0 +1,132 @@
+"""The full bearing: inner ring as a body, bearing law, housing on an elastic foundation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.bearings.law import DIRECTIONS, BearingLaw, RelativeMotion
+from hdrive_mbs.components.component import Component, Flange
+from hdrive_mbs.components.housing import Housing
+from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.expression import Value
+from hdrive_mbs.network.draft import Draft
+from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.rigid_mass import RigidMass
+from hdrive_mbs.network.station import Station
+from hdrive_mbs.quantities import option, parameter
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bearing(Component):
+    """Seed M section 4: F_B = K (q_b - q_h) + K_n (q_b - q_h)^n + D (q_b' - q_h') acts on the housing, -F_B on the ring.
+
+    The ring is a body with six coordinates; a rotor or a rigid section connected to the bearing makes one body
+    of both (Fig. 2(b)).  Without a housing the outer ring is held by the ground.  The housing moves in x and y
+    only, so tilt moments, axial force and friction torque go into the ground.
+    """
+
+    law: BearingLaw = option("force law between ring and housing")
+    mass: float = parameter("kg", "inner ring with the shaft in it", default=0.0, low=0.0)
+    polar_inertia: float = parameter("kg m^2", "ring about the axis, Jp", default=0.0, low=0.0)
+    transverse_inertia: float = parameter("kg m^2", "ring about a diameter, Jt", default=0.0, low=0.0)
+    housing: Housing | None = option("housing on its foundation; None: the outer ring is fixed", default=None)
+
+    def check(self) -> None:
+        if not isinstance(self.law, BearingLaw):
+            raise ParameterError(f"Bearing.law = {self.law!r}: must be a bearing law, for instance a LinearBearing(...).")
+        if self.housing is not None and not isinstance(self.housing, Housing):
+            raise ParameterError(f"Bearing.housing = {self.housing!r}: must be a Housing(...) or None.")
+
+    def flanges(self) -> tuple[Flange, ...]:
+        ring = RigidMass.rotor(self.mass, self.polar_inertia, self.transverse_inertia)
+        return (Flange(name="", lateral=True, mass=ring),)
+
+    def build(self, name: str, draft: Draft) -> None:
+        add_bearing(name, draft, draft.station(name), self.law, add_housing(name, draft, self.housing))
+
+
+def add_housing(name: str, draft: Draft, housing: Housing | None) -> tuple[str, ...]:
+    """The two coordinates of a housing with its foundation; none without a housing."""
+    if housing is None:
+        return ()
+    names = []
+    for key, stiffness, damping, power in (
+        ("x", housing.stiffness_x, housing.damping_x, housing.power_stiffness_x),
+        ("y", housing.stiffness_y, housing.damping_y, housing.power_stiffness_y),
+    ):
+        coordinate = draft.add_coordinate(f"{name}.housing.{key}", inertia=housing.mass, unit="m", doc=f"housing of {name} in {key}")
+        names.append(coordinate)
+        draft.add_matrix(
+            f"{name}.foundation_{key}", (), (coordinate,), stiffness=np.array([[stiffness]]), damping=np.array([[damping]])
+        )
+        if power != 0.0:
+            exponent = int(housing.power)
+
+            def force(moment: Moment, x: Value, v: Value, factor: float = power) -> Value:
+                return factor * raised(x, exponent)
+
+            draft.add_relative_torque(f"{name}.foundation_{key}_power", {coordinate: 1.0}, force)
+    return tuple(names)
+
+
+def raised(value: Value, exponent: int) -> Value:
+    """value^n by multiplication, exact for negative values in every back end."""
+    result = value
+    for _ in range(exponent - 1):
+        result = result * value
+    return result
+
+
+def add_bearing(name: str, draft: Draft, station: Station, law: BearingLaw, housing: tuple[str, ...]) -> None:
+    """Matrices and forces of a law between a station and housing coordinates, and the channels of its force."""
+    between = np.zeros((6, 6 + len(housing)))
+    between[:, :6] = np.eye(6)
+    for k in range(len(housing)):
+        between[k, 6 + k] = -1.0
+    stiffness, damping = np.asarray(law.stiffness_matrix(), float), np.asarray(law.damping_matrix(), float)
+    if stiffness.any() or damping.any():
+        draft.add_matrix(
+            f"{name}.coefficients", (station,), housing, stiffness=between.T @ stiffness @ between, damping=between.T @ damping @ between
+        )
+    stretches = {direction: station.stretch(direction) for direction in DIRECTIONS}
+    for direction, coordinate in zip("xy", housing):
+        stretches[direction] = {**stretches[direction], coordinate: -1.0}
+
+    def forces(moment: Moment, s: Mapping[str, Value], v: Mapping[str, Value]) -> Mapping[str, Value]:
+        return law.forces(_relative(s, v))
+
+    still = dict.fromkeys(DIRECTIONS, 0.0)
+    if law.forces(_relative(still, still)):
+        draft.add_coupling(f"{name}.force", stretches, forces)
+    for row, direction in enumerate("xy"):
+
+        def read(moment: Moment, row: int = row, direction: str = direction) -> Value:
+            s = {key: sum(f * moment.angle(c) for c, f in factors.items()) for key, factors in stretches.items()}
+            v = {key: sum(f * moment.speed(c) for c, f in factors.items()) for key, factors in stretches.items()}
+            linear = sum(stiffness[row, k] * s[key] + damping[row, k] * v[key] for k, key in enumerate(DIRECTIONS))
+            return linear + forces(moment, s, v).get(direction, 0.0)
+
+        draft.add_channel(f"{name}.force_{direction}", "N", f"force of {name} on its housing in {direction}", read)
+
+
+def _relative(s: Mapping[str, Value], v: Mapping[str, Value]) -> RelativeMotion:
+    return RelativeMotion(
+        x=s["x"],
+        y=s["y"],
+        z=s["z"],
+        psi=s["psi"],
+        theta=s["theta"],
+        angle=s["phi"],
+        vx=v["x"],
+        vy=v["y"],
+        vz=v["z"],
+        psi_rate=v["psi"],
+        theta_rate=v["theta"],
+        speed=v["phi"],
+    )

@@ -1,0 +1,64 @@
+"""A linear element over many coordinates: shaft sections, bearing coefficients, condensed parts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.expression import Value
+from hdrive_mbs.network.elements import Claim
+from hdrive_mbs.network.moment import Moment
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class MatrixElement:
+    """M q'' + D q' + K q = 0 over the named coordinates (forward for spins).
+
+    coordinates : n names
+    mass, damping, stiffness : n x n; unsymmetric stiffness is allowed (cross-coupled bearings)
+    """
+
+    name: str
+    coordinates: tuple[str, ...]
+    mass: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
+
+    def claims(self) -> tuple[Claim, ...]:
+        """Matrices promise nothing."""
+        return ()
+
+    def contribution(self, moment: Moment) -> dict[str, Value]:
+        """Forces -(K q + D q'); the mass enters the equations of motion on its own."""
+        result: dict[str, Value] = {}
+        for i, target in enumerate(self.coordinates):
+            force: Value = 0.0
+            for matrix, values in ((self.stiffness, moment.angles), (self.damping, moment.speeds)):
+                for j in np.flatnonzero(matrix[i]):
+                    force = force - float(matrix[i, j]) * values[self.coordinates[j]]
+            result[target] = force
+        return result
+
+    def power(self, moment: Moment) -> Value:
+        """Power that stiffness and damping take from the coordinates [W]."""
+        return -sum(force * moment.speed(name) for name, force in self.contribution(moment).items())
+
+    def stored(self, moment: Moment) -> Value:
+        """q^T K q / 2 [J], the elastic energy where K is symmetric."""
+        return -0.5 * sum(force * moment.angle(name) for name, force in self._elastic(moment).items())
+
+    def _elastic(self, moment: Moment) -> dict[str, Value]:
+        still = MatrixElement(self.name, self.coordinates, self.mass, 0.0 * self.damping, self.stiffness)
+        return still.contribution(moment)
+
+    def kinetic(self, moment: Moment) -> Value:
+        """q'^T M q' / 2 [J]."""
+        total: Value = 0.0
+        for i, j in np.argwhere(self.mass):
+            speeds = moment.speed(self.coordinates[i]) * moment.speed(self.coordinates[j])
+            total = total + 0.5 * float(self.mass[i, j]) * speeds
+        return total
