@@ -20,7 +20,7 @@ STEPS = 2500
 class RunUp:
     """x and y of the stations that carry the discs [m] over the ramp.
 
-    agreement : largest difference to a run with twice the step, over the largest displacement
+    agreement : largest difference to a run with twice the step, over the largest displacement, at that run's steps
     """
 
     motion: BPoly
@@ -48,11 +48,12 @@ def run_up(transient_term: float = 0.0) -> RunUp:
     1: it acts about the fixed z axis (rotation about y before x).  -1 is what ROSS has by default, in its matrix Ksdt:
     the sign that belongs to the axes of its source, beside gyroscopic terms in other axes.
 
-    Gauss's collocation with 4 stages, order 8.
+    Gauss's collocation with 4 stages, order 8, joined by quintic Hermite pieces through displacement, velocity and
+    acceleration; at the fastest forcing, 0.42 rad a step, these add (0.42)^6 / 46080 = 1e-7 of the motion between the steps.
     """
     fine, coarse = _integrate(transient_term, STEPS), _integrate(transient_term, STEPS // 2)
-    times = np.linspace(0.0, rotor.RAMP_DURATION, 5001)
-    largest = float(np.max(np.abs(fine(times))))
+    times = np.linspace(0.0, rotor.RAMP_DURATION, STEPS // 2 + 1)
+    largest = float(np.max(np.abs(fine(np.linspace(0.0, rotor.RAMP_DURATION, 10 * STEPS + 1)))))
     return RunUp(fine, largest, float(np.max(np.abs(coarse(times) - fine(times))) / largest))
 
 

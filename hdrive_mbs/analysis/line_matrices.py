@@ -81,8 +81,8 @@ class LineMatrices:
         elif isinstance(element, Circulation):
             whole = np.zeros_like(self._stiffness)
             at = np.ix_(*[[self._index[name] for name in element.coordinates]] * 2)
-            whole[at] = element.matrix
-            self._spinning.append((element.spin, "stiffness", whole))
+            whole[at] = element.circulatory / len(element.spins)
+            self._spinning += [(spin, "stiffness", sense * whole) for spin, sense in element.spins]
         elif not isinstance(element, StateRate):
             self._add_law(element)
 

@@ -115,30 +115,38 @@ class BallBearing(RadialBearing):
     def damping_matrix(self) -> FloatArray:
         return np.asarray(super().damping_matrix() + np.diag([self.damping, self.damping, 0.0, 0.0, 0.0, 0.0]))
 
-    def ball_forces(self, motion: RelativeMotion) -> list[tuple[Value, Value, Value]]:
-        """(push Q [N], cos a, sin a) of each ball."""
+    def approaches(self, motion: RelativeMotion) -> list[tuple[Value, Value, Value]]:
+        """(delta [m], cos a, sin a) of each ball; negative delta is a gap."""
         result = []
         for number in range(int(self.balls)):
             place = self.cage_ratio * motion.angle + (self.first_ball + 2.0 * math.pi * number / self.balls)
             cosine, sine = np.cos(place), np.sin(place)
-            approach = motion.x * cosine + motion.y * sine + (self.preload - self.radial_clearance)
-            push = self.contact_stiffness * np.maximum(approach, 0.0) ** 1.5
-            if self.contact_damping:
-                push = push * np.maximum(1.0 + self.contact_damping * (motion.vx * cosine + motion.vy * sine), 0.0)
-            result.append((push, cosine, sine))
+            result.append((motion.x * cosine + motion.y * sine + (self.preload - self.radial_clearance), cosine, sine))
         return result
 
     def elastic_energy(self, motion: RelativeMotion) -> Value:
         """V [J] of all contacts."""
-        still = self.replacing(contact_damping=0.0)
-        # Q = k delta^1.5, so that 2/5 k delta^2.5 = 2/5 Q (Q/k)^(2/3)
-        return sum(0.4 * push * (push / self.contact_stiffness) ** (2.0 / 3.0) for push, _, _ in still.ball_forces(motion))
+        return sum(0.4 * self.contact_stiffness * np.maximum(delta, 0.0) ** 2.5 for delta, _, _ in self.approaches(motion))
+
+    def ball_forces(self, motion: RelativeMotion) -> list[Value]:
+        """Push Q [N] of each ball."""
+        return [push for _, push, _, _ in self._contacts(motion)]
+
+    def _contacts(self, motion: RelativeMotion) -> list[tuple[Value, Value, Value, Value]]:
+        """(elastic push, whole push, cos a, sin a) of each ball."""
+        result = []
+        for delta, cosine, sine in self.approaches(motion):
+            elastic = self.contact_stiffness * np.maximum(delta, 0.0) ** 1.5
+            whole = elastic
+            if self.contact_damping:
+                whole = elastic * np.maximum(1.0 + self.contact_damping * (motion.vx * cosine + motion.vy * sine), 0.0)
+            result.append((elastic, whole, cosine, sine))
+        return result
 
     def forces(self, motion: RelativeMotion) -> Mapping[str, Value]:
-        pushes = self.ball_forces(motion)
-        elastic = pushes if not self.contact_damping else self.replacing(contact_damping=0.0).ball_forces(motion)
+        contacts = self._contacts(motion)
         return {
-            "x": sum(push * cosine for push, cosine, _ in pushes),
-            "y": sum(push * sine for push, _, sine in pushes),
-            "phi": self.cage_ratio * sum(push * (motion.y * cosine - motion.x * sine) for push, cosine, sine in elastic),
+            "x": sum(push * cosine for _, push, cosine, _ in contacts),
+            "y": sum(push * sine for _, push, _, sine in contacts),
+            "phi": self.cage_ratio * sum(push * (motion.y * cosine - motion.x * sine) for push, _, cosine, sine in contacts),
         }

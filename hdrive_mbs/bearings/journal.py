@@ -13,7 +13,7 @@ from hdrive_mbs.bearings.radial import RadialBearing
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
 
-_REST = 1e-9
+_REST = 1e-15
 """Drift over clearance [1/s] below which the film is that of a journal at rest (keeps derivatives finite)."""
 
 
@@ -29,9 +29,8 @@ class JournalBearing(RadialBearing):
     C c^3 (s.n)/(c - x cos - y sin)^3 n dtheta.
 
     Source: Ocvirk (NACA TN 2808, 1952) for the pressure, Guembel's condition (no negative pressure);
-    the closed form was derived for this package and is that of Capone (L'Energia Elettrica 63 (1986)
-    105) with his functions worked out.  Steady values as in Friswell et al., Dynamics of Rotating
-    Machines (2010), 5.5.1.
+    the closed form was derived for this package (one of its kind: Capone, L'Energia Elettrica 3 (1991)
+    105).  Steady values as in Friswell et al., Dynamics of Rotating Machines (2010), 5.5.1.
 
     Leaves out the length (good for L/D up to about 0.5, far too stiff for L/D > 1), inertia, turbulence,
     heating of the oil, feed pressure and tilt, and the drag on the spin.  Beyond ``largest_eccentricity``

@@ -64,7 +64,7 @@ def _unloading(
         at, error = _solve(law, of, factor * wanted, speed, angle, count=2)
         if error > _tolerance(factor * wanted):
             continue
-        for part in np.geomspace(factor, 1.0, 1 + 10 * round(np.log10(factor))):
+        for part in np.geomspace(factor, 1.0, 1 + 40 * round(np.log10(factor))):
             at, error = _newton(of, at, part * wanted, speed, angle)
         return at, error
     return failed

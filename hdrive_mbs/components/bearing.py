@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +13,7 @@ from hdrive_mbs.components.component import Component, Flange
 from hdrive_mbs.components.housing import Housing
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
-from hdrive_mbs.network.draft import Draft
+from hdrive_mbs.network.draft import Draft, Torque
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.rigid_mass import RigidMass
 from hdrive_mbs.network.station import Station
@@ -48,7 +48,21 @@ class Bearing(Component):
         return (Flange(name="", lateral=True, mass=ring),)
 
     def build(self, name: str, draft: Draft) -> None:
-        add_bearing(name, draft, draft.station(name), self.law, add_housing(name, draft, self.housing))
+        station = draft.station(name)
+        if self.housing is not None and draft.is_rotor(station) and has_forces(self.law):
+            add_bearing(name, draft, station, self.law, add_housing_across(name, draft, station, self.housing))
+            return
+        housing = add_housing(name, draft, self.housing)
+        stretches = {direction: station.stretch(direction) for direction in DIRECTIONS}
+        for direction, coordinate in zip("xy", housing):
+            stretches[direction] = {**stretches[direction], coordinate: -1.0}
+        add_bearing(name, draft, station, self.law, stretches)
+
+
+def has_forces(law: BearingLaw) -> bool:
+    """Whether a law has more than constant matrices."""
+    still = dict.fromkeys(DIRECTIONS, 0.0)
+    return bool(law.forces(_relative(still, still)))
 
 
 def add_housing(name: str, draft: Draft, housing: Housing | None) -> tuple[str, ...]:
@@ -66,13 +80,53 @@ def add_housing(name: str, draft: Draft, housing: Housing | None) -> tuple[str, 
             f"{name}.foundation_{key}", (), (coordinate,), stiffness=np.array([[stiffness]]), damping=np.array([[damping]])
         )
         if power != 0.0:
-            exponent = int(housing.power)
-
-            def force(moment: Moment, x: Value, v: Value, factor: float = power) -> Value:
-                return factor * raised(x, exponent)
-
-            draft.add_relative_torque(f"{name}.foundation_{key}_power", {coordinate: 1.0}, force)
+            draft.add_relative_torque(f"{name}.foundation_{key}_power", {coordinate: 1.0}, _power_law(power, int(housing.power)))
     return tuple(names)
+
+
+def add_housing_across(name: str, draft: Draft, station: Station, housing: Housing) -> dict[str, dict[str, float]]:
+    """A housing under a rotor, counted by the displacement across the bearing u = x - x_h: the stretches of the law.
+
+    A law over u and the spin is short enough for a compiled function, which one over all six coordinates of the
+    rotor and the housing is not.  Mass and foundation act on x_h = x - u.
+    """
+    stretches = {direction: station.stretch(direction) for direction in DIRECTIONS}
+    for key, stiffness, damping, power in (
+        ("x", housing.stiffness_x, housing.damping_x, housing.power_stiffness_x),
+        ("y", housing.stiffness_y, housing.damping_y, housing.power_stiffness_y),
+    ):
+        across = draft.add_coordinate(f"{name}.across_{key}", inertia=0.0, unit="m", doc=f"displacement across {name} in {key}")
+        row = np.zeros((1, 7))
+        row[0, DIRECTIONS.index(key)], row[0, 6] = 1.0, -1.0
+        square = row.T @ row
+        draft.add_matrix(
+            f"{name}.foundation_{key}",
+            (station,),
+            (across,),
+            mass=housing.mass * square,
+            stiffness=stiffness * square,
+            damping=damping * square,
+        )
+        factors = {**stretches[key], across: -1.0}
+        if power != 0.0:
+            draft.add_relative_torque(f"{name}.foundation_{key}_power", factors, _power_law(power, int(housing.power)))
+        add_housing_channels(name, key, draft, factors)
+        stretches[key] = {across: 1.0}
+    return stretches
+
+
+def add_housing_channels(name: str, key: str, draft: Draft, factors: Mapping[str, float]) -> None:
+    """The motion of a housing that is no coordinate of its own."""
+
+    def read(kind: str) -> Callable[[Moment], Value]:
+        return lambda moment: sum(f * getattr(moment, kind)[c] for c, f in factors.items())
+
+    draft.add_channel(f"{name}.housing.{key}", "m", f"housing of {name} in {key}", read("angles"), slope=f"{name}.housing.{key}_rate")
+    draft.add_channel(f"{name}.housing.{key}_rate", "m/s", f"rate of the housing of {name} in {key}", read("speeds"))
+
+
+def _power_law(factor: float, exponent: int) -> Torque:
+    return lambda moment, x, v: factor * raised(x, exponent)
 
 
 def raised(value: Value, exponent: int) -> Value:
@@ -83,27 +137,21 @@ def raised(value: Value, exponent: int) -> Value:
     return result
 
 
-def add_bearing(name: str, draft: Draft, station: Station, law: BearingLaw, housing: tuple[str, ...]) -> None:
-    """Matrices and forces of a law between a station and housing coordinates, and the channels of its force."""
-    between = np.zeros((6, 6 + len(housing)))
-    between[:, :6] = np.eye(6)
-    for k in range(len(housing)):
-        between[k, 6 + k] = -1.0
+def add_bearing(name: str, draft: Draft, station: Station, law: BearingLaw, stretches: Mapping[str, Mapping[str, float]]) -> None:
+    """Matrices and forces of a law along its six stretches, and the channels of its force on the housing."""
     stiffness, damping = np.asarray(law.stiffness_matrix(), float), np.asarray(law.damping_matrix(), float)
+    extra = tuple(dict.fromkeys(c for factors in stretches.values() for c in factors if c not in station.names))
+    names = (*station.names[:5], *extra)
+    rows = np.array([[0.0 if c == "ground" else stretches[d].get(c, 0.0) for c in names] for d in DIRECTIONS])
+    rows[5] = 0.0
     if stiffness.any() or damping.any():
-        draft.add_matrix(
-            f"{name}.coefficients", (station,), housing, stiffness=between.T @ stiffness @ between, damping=between.T @ damping @ between
-        )
-    stretches = {direction: station.stretch(direction) for direction in DIRECTIONS}
-    for direction, coordinate in zip("xy", housing):
-        stretches[direction] = {**stretches[direction], coordinate: -1.0}
+        draft.add_coordinate_matrix(f"{name}.coefficients", names, stiffness=rows.T @ stiffness @ rows, damping=rows.T @ damping @ rows)
 
     def forces(moment: Moment, s: Mapping[str, Value], v: Mapping[str, Value]) -> Mapping[str, Value]:
         return law.forces(_relative(s, v))
 
-    still = dict.fromkeys(DIRECTIONS, 0.0)
-    if law.forces(_relative(still, still)):
-        draft.add_coupling(f"{name}.force", stretches, forces)
+    if has_forces(law):
+        draft.add_coupling(f"{name}.force", {key: dict(factors) for key, factors in stretches.items()}, forces)
     for row, direction in enumerate("xy"):
 
         def read(moment: Moment, row: int = row, direction: str = direction) -> Value:

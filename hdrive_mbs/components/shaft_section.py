@@ -104,7 +104,8 @@ class ShaftSection(Component):
         damping = self.damping * stiffness + self.rotating_damping * bending
         draft.add_matrix(f"{name}.beam", (a, b), stiffness=stiffness, damping=damping, mass=mass)
         if self.rotating_damping > 0.0:
-            draft.add_element(Circulation.between(f"{name}.rotating_damping", a, b, self.rotating_damping * beam.circulatory()))
+            factor = self.rotating_damping
+            draft.add_element(Circulation.between(f"{name}.rotating_damping", a, b, factor * beam.circulatory(), factor * bending))
         torsion = beam.shear_modulus * beam.polar_moment / beam.length
         sense = b.sense if not b.held else a.sense
         factors: dict[str, float] = {a.node: float(sense * a.sense)}

@@ -21,7 +21,7 @@ import numpy as np
 from exudyn import itemInterface as item  # noqa: N813
 
 from hdrive_mbs.engine.guard import check_connector, check_coupling, check_scalar
-from hdrive_mbs.engine.records import CoupledRecord, ScalarRecord, make_records, oriented
+from hdrive_mbs.engine.records import CoupledRecord, ScalarRecord, make_records, oriented, renamed
 from hdrive_mbs.engine.symbolic import LARGEST_LAW, SYMBOLIC_VECTOR_LIMIT, connector_function, generic_function, written_out
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Expression, variables
@@ -60,6 +60,8 @@ class Assembly:
     """First coordinate of a node -> sensors of its coordinates, speeds and (with rotors) accelerations."""
     signs: dict[str, int]
     """Sense of each coordinate in the engine against the forward one."""
+    copies: tuple[str, ...]
+    """Spins of rotors of which the engine keeps a copy (see _Builder.copied), after the states."""
     lowered: list[Lowered] = field(default_factory=list)
     kept: list[Any] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
@@ -70,6 +72,8 @@ class Assembly:
         q = [self.signs[name] * angles.get(name, 0.0) for name in self.bodies] + [0.0] * len(self.states)
         v = [self.signs[name] * speeds.get(name, 0.0) for name in self.bodies]
         v += [states.get(state.name, state.initial) for state in self.network.states]
+        q += [self.signs[name] * angles.get(name, 0.0) for name in self.copies]
+        v += [self.signs[name] * speeds.get(name, 0.0) for name in self.copies]
         self.mbs.systemData.SetODE2Coordinates(q, exu.ConfigurationType.Initial)
         self.mbs.systemData.SetODE2Coordinates_t(v, exu.ConfigurationType.Initial)
 
@@ -95,7 +99,7 @@ def assemble(network: Network, *, lowering: str = "symbolic", guard: bool = True
             if isinstance(record, ScalarRecord):
                 builder.add_scalar(record)
             else:
-                builder.add_coupled(oriented(record, builder.signs))
+                builder.add_coupled(builder.copied(oriented(record, builder.signs)))
     return builder.finish()
 
 
@@ -112,6 +116,7 @@ class _Builder:
         self.signs = {body.name: 1 for body in network.bodies}
         self.owner = {name: rotor for rotor in network.rotors for name in rotor.coordinates}
         self.signs |= {rotor.coordinates[-1]: rotor.sense for rotor in network.rotors}
+        self.copies: list[str] = []
         self.carried = self._masses_in_matrices()
         made: set[str] = set()
         for body in network.bodies:
@@ -153,6 +158,32 @@ class _Builder:
         for k, name in enumerate(rotor.coordinates):
             self.nodes[name] = node
             self.markers[name] = self.mbs.AddMarker(item.MarkerNodeCoordinate(nodeNumber=node, coordinate=k))
+
+    def copied(self, record: CoupledRecord) -> CoupledRecord:
+        """The record with a copy of a rotor's spin where it reads no other coordinate of that rotor.
+
+        A symbolic coupling takes six coordinates, and a rotor's node has six already.  The copy c is a Node1D
+        with the one equation J (c'' - phi'') = 0, a row of a mass matrix: exact in every integrator.
+        """
+        for rotor in self.network.rotors:
+            spin, touched = rotor.coordinates[-1], {*record.targets, *record.depends} & set(rotor.coordinates)
+            if record.outputs is not None and touched == {spin} and spin not in record.targets:
+                record = renamed(record, spin, self._copy(rotor))
+        return record
+
+    def _copy(self, rotor: Rotor) -> str:
+        spin = rotor.coordinates[-1]
+        name = f"{spin}~"
+        if spin not in self.copies:
+            self.copies.append(spin)
+            self._add_node(name, 0.0)
+            mass, zero = np.zeros((7, 7)), np.zeros((7, 7))
+            mass[0, 0], mass[0, 6] = rotor.body.polar, -rotor.body.polar
+            nodes = [self.nodes[name], self.nodes[spin]]
+            self.mbs.AddObject(
+                item.ObjectGenericODE2(nodeNumbers=nodes, massMatrix=mass, stiffnessMatrix=zero, dampingMatrix=zero, forceVector=[0.0] * 7)
+            )
+        return name
 
     # -- constant matrices -------------------------------------------------------------------------
     def add_matrix(self, element: MatrixElement) -> None:
@@ -348,7 +379,7 @@ class _Builder:
         kinds = [exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t]
         if self.network.is_coupled:
             kinds.append(exu.OutputVariableType.Coordinates_tt)
-        first = {int(node): name for name, node in reversed(self.nodes.items())}
+        first = {int(node): name for name, node in reversed(self.nodes.items()) if not name.endswith("~")}
         sensors = {
             name: tuple(
                 self.mbs.AddSensor(item.SensorNode(nodeNumber=self.nodes[name], outputVariableType=kind, storeInternal=True, writeToFile=False))
@@ -365,6 +396,7 @@ class _Builder:
             states=tuple(state.name for state in self.network.states),
             sensors=sensors,
             signs=self.signs,
+            copies=tuple(self.copies),
             lowered=self.lowered,
             kept=self.kept,
             failures=self.failures,

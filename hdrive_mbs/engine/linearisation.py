@@ -44,7 +44,10 @@ def linearise(assembly: Assembly, *, angles: Mapping[str, float], speeds: Mappin
     mass, stiffness, damping = (np.asarray(item, float) for item in assembly.mbs.ComputeLinearizedSystem(settings)[:3])
     n, m = len(assembly.bodies), len(assembly.states)
     signs = np.array([assembly.signs[name] for name in assembly.bodies] + [1] * m, float)
-    mass, stiffness, damping = (np.outer(signs, signs) * item for item in (mass, stiffness, damping))
+    for k, name in enumerate(assembly.copies, start=n + m):  # what depends on the copy of a spin depends on the spin
+        for matrix in (stiffness, damping):
+            matrix[:, assembly.bodies.index(name)] += matrix[:, k]
+    mass, stiffness, damping = (np.outer(signs, signs) * item[: n + m, : n + m] for item in (mass, stiffness, damping))
     body, state = slice(0, n), slice(n, n + m)
     inverse = np.linalg.inv(mass[body, body])
     matrix = np.zeros((2 * n + m, 2 * n + m))

@@ -61,6 +61,24 @@ class CoupledRecord:
     reason: str = ""
 
 
+def renamed(coupled: CoupledRecord, old: str, new: str) -> CoupledRecord:
+    """The record with another name for a coordinate that it only reads."""
+    assert coupled.outputs is not None
+    given = {f"{kind}:{old}": variable(f"{kind}:{new}") for kind in ("angle", "speed")}
+
+    def substituted(expression: Expression) -> Expression:
+        return record(evaluate(expression, {name: given.get(name, variable(name)) for name in variables(expression)}))
+
+    def plain(moment: Moment) -> dict[str, Value]:
+        angles, speeds = dict(moment.angles), dict(moment.speeds)
+        angles[old], speeds[old] = angles.pop(new), speeds.pop(new)
+        return coupled.plain(Moment(time=moment.time, angles=angles, speeds=speeds, states=moment.states))
+
+    outputs = {name: substituted(item) for name, item in coupled.outputs.items()}
+    depends = tuple(new if name == old else name for name in coupled.depends)
+    return CoupledRecord(coupled.name, coupled.targets, outputs, depends, plain, coupled.reason)
+
+
 class _Looked(Mapping[str, float]):
     """A mapping of small numbers that remembers which names a law looked at."""
 

@@ -1,4 +1,4 @@
-"""Forces of damping that turns with the shaft: spin times displacement."""
+"""Forces of damping that turns with the shaft: spin times displacement, and the brake on the spin."""
 
 from __future__ import annotations
 
@@ -17,42 +17,56 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Circulation:
-    """F = -w C q with the spin speed w of the first end (true sense): the circulatory part of rotating damping.
+    """Lateral forces -w C q and the torque q.C q' - w q.B q on the spin, half at each end; w is the mean true spin.
 
-    It does no work on the spin here; the power it takes from the spin is of second order in the displacements.
+    With the dissipative part -B q' (a matrix of its own), B = beta K_b and C = -B J, where J turns lateral vectors by
+    +90 degrees, it is damping of the rates in the turning frame, q' - w J q: what whirl gains, the spin loses.
     """
 
     name: str
     coordinates: tuple[str, ...]
-    spin: str
-    matrix: FloatArray
+    spins: tuple[tuple[str, int], ...]
+    """Spin coordinate and sense at each end that can turn."""
+    circulatory: FloatArray
+    dissipative: FloatArray
 
     @classmethod
-    def between(cls, name: str, a: Station, b: Station, matrix: FloatArray) -> Circulation:
-        """From a 12x12 matrix over two stations."""
-        lead = b if a.held else a
+    def between(cls, name: str, a: Station, b: Station, circulatory: FloatArray, dissipative: FloatArray) -> Circulation:
+        """From C and B, 12x12 over two stations."""
         names = (*a.names[:5], *b.names[:5])
         keep = [k for k in range(12) if k % 6 < 5]
         arm = np.zeros((12, 12))
         arm[:6, :6], arm[6:, 6:] = a.arm(), b.arm()
-        moved = (arm.T @ matrix @ arm)[np.ix_(keep, keep)]
         used = list(dict.fromkeys(item for item in names if item != "ground"))
         gather = np.array([[float(item == kept) for kept in used] for item in names])
-        return cls(name, tuple(used), lead.node, lead.sense * (gather.T @ moved @ gather))
+        made = [gather.T @ (arm.T @ matrix @ arm)[np.ix_(keep, keep)] @ gather for matrix in (circulatory, dissipative)]
+        spins = tuple((station.node, station.sense) for station in (a, b) if not station.held)
+        return cls(name, tuple(used), spins, made[0], made[1])
 
     def claims(self) -> tuple[Claim, ...]:
-        """It feeds whirl above the critical speed: nothing to promise."""
+        """It feeds whirl above the critical speed: nothing to promise on its own."""
         return ()
 
+    def _spin(self, moment: Moment) -> Value:
+        return sum(sense * moment.speed(name) for name, sense in self.spins) / len(self.spins)
+
+    def _times(self, matrix: FloatArray, moment: Moment) -> list[Value]:
+        """Matrix times displacements."""
+        return [sum((float(row[j]) * moment.angle(self.coordinates[j]) for j in np.flatnonzero(row)), 0.0 * moment.time) for row in matrix]
+
     def contribution(self, moment: Moment) -> dict[str, Value]:
-        speed = moment.speed(self.spin)
-        result: dict[str, Value] = {}
-        for i, target in enumerate(self.coordinates):
-            row = np.flatnonzero(self.matrix[i])
-            if len(row):
-                result[target] = -speed * sum(float(self.matrix[i, j]) * moment.angle(self.coordinates[j]) for j in row)
+        spin = self._spin(moment)
+        turned = self._times(self.circulatory, moment)
+        result: dict[str, Value] = {name: -spin * value for name, value in zip(self.coordinates, turned, strict=True)}
+        held = self._times(self.dissipative, moment)
+        torque: Value = 0.0
+        for name, across, along in zip(self.coordinates, turned, held, strict=True):
+            # q.C q' = -q'.C q, as C is skew
+            torque = torque - moment.speed(name) * across - spin * moment.angle(name) * along
+        for name, sense in self.spins:
+            result[name] = sense * torque / len(self.spins)
         return result
 
     def power(self, moment: Moment) -> Value:
-        """Power that it takes from the lateral motion [W] (negative where it feeds whirl)."""
+        """Power that it takes from the coordinates, without that of the matrix B [W]."""
         return -sum(force * moment.speed(name) for name, force in self.contribution(moment).items())

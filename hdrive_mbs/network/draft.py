@@ -260,6 +260,16 @@ class Draft:
         made = [gather.T @ item @ gather for item in matrices]
         self._elements.append(MatrixElement(name, tuple(used), made[0], made[1], made[2]))
 
+    def add_coordinate_matrix(self, name: str, names: tuple[str, ...], *, stiffness: FloatArray, damping: FloatArray) -> None:
+        """Constant matrices over coordinates by name ("ground" is held)."""
+        kept = [k for k, item in enumerate(names) if item != "ground"]
+        at = np.ix_(kept, kept)
+        self._elements.append(MatrixElement(name, tuple(names[k] for k in kept), np.zeros((len(kept),) * 2), damping[at], stiffness[at]))
+
+    def is_rotor(self, station: Station) -> bool:
+        """Whether the station is a rigid body with all its couplings and free to turn."""
+        return self._nodes[station.node].is_rotor and station.node not in self._motions
+
     def add_coupling(self, name: str, stretches: dict[str, dict[str, float]], forces: Forces, *, dissipative: bool = False) -> None:
         """Forces along several stretches that depend on each other, positive when they resist."""
         self._elements.append(Coupling(name, stretches, forces, dissipative))

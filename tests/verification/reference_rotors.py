@@ -27,14 +27,17 @@ the ring to ground in z and in both tilts, from the housing to ground in x and y
     (m_h + m_b) N1^T N1 + Jt N2^T N2,   c_h N1^T N1 + c_tilt N2^T N2,   k_h N1^T N1 + k_tilt N2^T N2
 
 in (x, theta) and in (y, -psi): N1 deflection and N2 slope of the section at the bearing.  Section 5 has
-neither spin nor axial motion of the bearing: its polar inertia is left out, its axial stiffness and
-damping act on the linear interpolation of z.  It imports nothing from the package.
+neither spin nor axial motion of the bearing: its polar inertia is left out (``spin_inertia`` takes it in,
+at the linear interpolation of phi), its axial stiffness and damping act on the linear interpolation of z.
+
+It imports nothing from the package.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -311,7 +314,7 @@ def _labels(names: list[str], housings: list[str]) -> tuple[str, ...]:
 
 def _sections(line: Line, stations: tuple[Station, ...], size: int) -> Array:
     K = np.zeros((size, size))
-    for i, (left, right) in enumerate(zip(stations, stations[1:])):
+    for i, (left, right) in enumerate(pairwise(stations)):
         here = slice(6 * i, 6 * i + 12)
         K[here, here] += section_stiffness(right.z - left.z, line.diameter, line.youngs_modulus, line.shear_modulus)
     return K
@@ -354,7 +357,7 @@ def full(line: Line) -> System:
     return System(line, labels, bodies, M, K, C, tuple(cubics), tuple(housings))
 
 
-def simplified(line: Line) -> System:
+def simplified(line: Line, spin_inertia: bool = False) -> System:
     """Section 5 of the paper: the bearings as nodal matrices of the section that runs across them."""
     kept = tuple(s for s in line.stations if s.bearing is None)
     size = 6 * len(kept)
@@ -369,7 +372,7 @@ def simplified(line: Line) -> System:
             continue
         if line.gravity or station.bearing.cubic:
             raise ValueError("section 5 has neither the weight of the bearing nor its cubic stiffness")
-        i = next(n for n, (left, right) in enumerate(zip(kept, kept[1:])) if left.z < station.z < right.z)
+        i = next(n for n, (left, right) in enumerate(pairwise(kept)) if left.z < station.z < right.z)
         length, place = kept[i + 1].z - kept[i].z, station.z - kept[i].z
         deflection, slope = section_shapes(length, place)
         N1, N2 = np.outer(deflection, deflection), np.outer(slope, slope)
@@ -384,5 +387,8 @@ def simplified(line: Line) -> System:
         axial = np.ix_([6 * i + 2, 6 * i + 8], [6 * i + 2, 6 * i + 8])
         K[axial] += bearing.axial_stiffness * np.outer(share, share)
         C[axial] += bearing.axial_damping * np.outer(share, share)
+        if spin_inertia:
+            spin = np.ix_([6 * i + 5, 6 * i + 11], [6 * i + 5, 6 * i + 11])
+            M[spin] += body.polar * np.outer(share, share)
     bodies = tuple((6 * i, s.body) for i, s in enumerate(kept))
     return System(line, _labels([s.name for s in kept], []), bodies, M, K, C, (), ())

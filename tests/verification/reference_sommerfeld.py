@@ -14,8 +14,8 @@ and, with x'' and y'' from the first two, the same about P:
 
     J_P phi'' = T + e ((k y + c y') cos phi - (k x + c x') sin phi)
 
-In the frame that turns with the disc, (x + i y) = (u + i v) exp(i phi), P has its own spin of at most a
-few turns a second left; the integration is done in the fixed frame all the same, which is the plainer one.
+The two agree; ``inertia`` is J_P unless said otherwise (J_C is 8e-6 of it larger in the example).
+No gravity, no drag on the spin: what the torque does beyond the steady whirl goes into speed.
 """
 
 from __future__ import annotations
@@ -143,3 +143,18 @@ def spin_up(
     if run.status < 0:
         raise RuntimeError(run.message)
     return SpinUp(run.t, run.y.T, len(run.t_events[0]) > 0)
+
+
+def capture_threshold(
+    disc: UnbalancedDisc, low: float, high: float, *, width: float = 1e-5, end: float = 1000.0, tolerance: float = 1e-9
+) -> tuple[float, float]:
+    """Bisection from rest: the torque that is still captured and the one that passes."""
+    if spin_up(disc, low, end=end, tolerance=tolerance).passed or not spin_up(disc, high, end=end, tolerance=tolerance).passed:
+        raise ValueError(f"the threshold is not between {low} and {high} N m")
+    while high - low > width:
+        torque = 0.5 * (low + high)
+        if spin_up(disc, torque, end=end, tolerance=tolerance).passed:
+            high = torque
+        else:
+            low = torque
+    return low, high
