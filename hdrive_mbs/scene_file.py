@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from hdrive_mbs import components, effects, flexsplines, loads, motors, teeth
+from hdrive_mbs import bearings, components, effects, flexsplines, loads, motors, teeth
 from hdrive_mbs.components.component import Component
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import FileFormatError, HdriveError, PlaceError, UnitError
@@ -162,7 +162,7 @@ def all_types() -> dict[str, type[Described]]:
 
 
 def _known_types(extra: Iterable[type[Described]]) -> dict[str, type[Described]]:
-    for package in (components, effects, flexsplines, loads, motors, teeth):
+    for package in (bearings, components, effects, flexsplines, loads, motors, teeth):
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             importlib.import_module(module.name)
     found: dict[str, type[Described]] = {}

@@ -274,9 +274,11 @@ def _response(
         if channel.slope:
             slopes[channel.name] = channel.slope
     rates = _rates(network, raw, moment)
-    values |= {f"{body.name}_acceleration": rates[body.name] for body in network.bodies if body.lateral}
-    units |= {f"{body.name}_acceleration": f"{body.unit}/s^2" for body in network.bodies if body.lateral}
-    docs |= {f"{body.name}_acceleration": f"acceleration of {body.name}" for body in network.bodies if body.lateral}
+    for channel in network.channels:
+        if channel.factors is not None:
+            name = f"{channel.name}_acceleration"
+            values[name] = np.asarray(sum((f * rates[c] for c, f in channel.factors.items()), np.zeros(len(raw.times))))
+            units[name], docs[name] = f"{channel.unit}/s^2", f"acceleration of the {channel.doc}"
     for place, node in network.places.items():
         if node in senses and f"{place}.speed" in values:
             name = f"{place}.acceleration"
@@ -310,7 +312,9 @@ def _rates(network: Network, raw: RawRun, moment: Moment) -> dict[str, FloatArra
     if not raw.accelerations:
         return _read_all(network.accelerations, moment)
     states = {equation.state: read_over(equation.rate, moment) for equation in network.state_equations()}
-    return {**raw.accelerations, **states}
+    start = network.accelerations(_point(moment, 0))  # explicit solvers of the engine leave zeros there
+    moved = {name: np.concatenate([[float(start[name])], values[1:]]) for name, values in raw.accelerations.items()}
+    return {**moved, **states}
 
 
 def _difference(network: Network, coarse: RawRun, fine: RawRun) -> dict[str, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,7 +49,7 @@ class Bearing(Component):
 
     def build(self, name: str, draft: Draft) -> None:
         station = draft.station(name)
-        if self.housing is not None and draft.is_rotor(station) and has_forces(self.law):
+        if self.housing is not None and has_forces(self.law):
             add_bearing(name, draft, station, self.law, add_housing_across(name, draft, station, self.housing))
             return
         housing = add_housing(name, draft, self.housing)
@@ -85,10 +85,10 @@ def add_housing(name: str, draft: Draft, housing: Housing | None) -> tuple[str, 
 
 
 def add_housing_across(name: str, draft: Draft, station: Station, housing: Housing) -> dict[str, dict[str, float]]:
-    """A housing under a rotor, counted by the displacement across the bearing u = x - x_h: the stretches of the law.
+    """A housing counted by the displacement across the bearing u = x - x_h: the stretches of the law.
 
-    A law over u and the spin is short enough for a compiled function, which one over all six coordinates of the
-    rotor and the housing is not.  Mass and foundation act on x_h = x - u.
+    A law over u and the spin is evaluated once (not for the ring and again for the housing), and under a rotor it
+    is short enough for a compiled function.  Mass and foundation act on x_h = x - u.
     """
     stretches = {direction: station.stretch(direction) for direction in DIRECTIONS}
     for key, stiffness, damping, power in (
@@ -110,19 +110,9 @@ def add_housing_across(name: str, draft: Draft, station: Station, housing: Housi
         factors = {**stretches[key], across: -1.0}
         if power != 0.0:
             draft.add_relative_torque(f"{name}.foundation_{key}_power", factors, _power_law(power, int(housing.power)))
-        add_housing_channels(name, key, draft, factors)
+        draft.add_displacement(f"{name}.housing.{key}", factors, "m", f"housing of {name} in {key}")
         stretches[key] = {across: 1.0}
     return stretches
-
-
-def add_housing_channels(name: str, key: str, draft: Draft, factors: Mapping[str, float]) -> None:
-    """The motion of a housing that is no coordinate of its own."""
-
-    def read(kind: str) -> Callable[[Moment], Value]:
-        return lambda moment: sum(f * getattr(moment, kind)[c] for c, f in factors.items())
-
-    draft.add_channel(f"{name}.housing.{key}", "m", f"housing of {name} in {key}", read("angles"), slope=f"{name}.housing.{key}_rate")
-    draft.add_channel(f"{name}.housing.{key}_rate", "m/s", f"rate of the housing of {name} in {key}", read("speeds"))
 
 
 def _power_law(factor: float, exponent: int) -> Torque:

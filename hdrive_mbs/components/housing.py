@@ -15,8 +15,6 @@ class Housing(Described):
     The housing does not tilt, turn or move axially; the foundation under it is the ground.
     """
 
-    _kind = "housing"
-
     mass: float = parameter("kg", "mass m_h", above=0.0)
     stiffness_x: float = parameter("N/m", "foundation stiffness in x", low=0.0)
     stiffness_y: float = parameter("N/m", "foundation stiffness in y", low=0.0)

@@ -7,7 +7,7 @@ also ``station``, ``add_station``, ``add_coordinate``, ``add_matrix`` and ``add_
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -229,10 +229,18 @@ class Draft:
     def add_coordinate(self, name: str, *, inertia: float, unit: str, doc: str) -> str:
         """A lateral coordinate of a part's own (a housing, a mode): channels name, name_rate and name_acceleration."""
         self._bodies.append(Body(name, inertia, 1, 0.0, unit, lateral=True))
-        self.add_channel(name, unit, doc, lambda moment: moment.angle(name), slope=f"{name}_rate")
-        rate = f"{name}_acceleration"
-        self.add_channel(f"{name}_rate", f"{unit}/s", f"rate of the {doc}", lambda moment: moment.speed(name), slope=rate)
+        self.add_displacement(name, {name: 1.0}, unit, doc)
         return name
+
+    def add_displacement(self, name: str, factors: Mapping[str, float], unit: str, doc: str) -> None:
+        """Channels name, name_rate and name_acceleration of a sum of lateral coordinates."""
+        if name in self._channels:
+            return
+        rate = f"{name}_rate"
+        self._channels[name] = Channel(name, unit, doc, lambda m: sum(f * m.angle(c) for c, f in factors.items()), rate, factors)
+        self._channels[rate] = Channel(
+            rate, f"{unit}/s", f"rate of the {doc}", lambda m: sum(f * m.speed(c) for c, f in factors.items()), f"{name}_acceleration"
+        )
 
     def add_matrix(
         self,
@@ -420,7 +428,8 @@ class Draft:
             return
         for node in self._nodes.values():
             if node.lateral and node.name != "ground":
-                self._elements += weights(node.name, node.mass, node.sense, self._gravity, node.name not in self._motions)
+                is_free = node.is_rotor and node.name not in self._motions
+                self._elements += weights(node.name, node.mass, node.sense, self._gravity, is_free)
         falls = {f".{key}": value for key, value in zip("xyz", self._gravity, strict=True) if value != 0.0}
         for body in self._bodies:
             for ending, value in falls.items():

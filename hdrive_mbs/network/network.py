@@ -75,13 +75,18 @@ class State:
 
 @dataclass(frozen=True)
 class Channel:
-    """A quantity that can be read from every moment of a run."""
+    """A quantity that can be read from every moment of a run.
+
+    slope : channel that holds its rate
+    factors : of coordinates, where it is a lateral displacement; a run then has ``<name>_acceleration`` too
+    """
 
     name: str
     unit: str
     doc: str
     read: Callable[[Moment], Value]
     slope: str | None = None
+    factors: Mapping[str, float] | None = None
 
 
 @dataclass(frozen=True)

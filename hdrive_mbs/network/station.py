@@ -11,6 +11,7 @@ import numpy.typing as npt
 from hdrive_mbs.expression import Value, gradient
 from hdrive_mbs.network.coupling import Gyroscope
 from hdrive_mbs.network.elements import AppliedTorque, Element
+from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Body, Channel, Rotor
 from hdrive_mbs.network.rigid_mass import RigidMass
@@ -95,7 +96,19 @@ def station_bodies(
         elements += _forced_unbalance(node, mass, sense, motion)
     if mass.polar > 0.0:
         elements.append(Gyroscope(f"{node}.gyroscope", names[3], names[4], node, sense * mass.polar))
+    if mass.centre[2] != 0.0:
+        elements.append(_lever(node, mass))
     return StationBodies(tuple(bodies), tuple(elements), None)
+
+
+def _lever(node: str, mass: RigidMass) -> MatrixElement:
+    """What a centre of mass at distance a along +z adds to the masses: m a between x and theta, -m a between y and psi."""
+    x, y, _, psi, theta, _ = coordinate_names(node)
+    moment = mass.mass * mass.centre[2]
+    matrix = np.zeros((4, 4))
+    matrix[0, 1] = matrix[1, 0] = moment
+    matrix[2, 3] = matrix[3, 2] = -moment
+    return MatrixElement(f"{node}.lever", (x, theta, y, psi), matrix, np.zeros((4, 4)), np.zeros((4, 4)))
 
 
 def _forced_unbalance(node: str, mass: RigidMass, sense: int, motion: Callable[[Value], Value]) -> Iterator[Element]:
@@ -127,19 +140,22 @@ def _forced_unbalance(node: str, mass: RigidMass, sense: int, motion: Callable[[
         yield AppliedTorque(f"{node}.unbalance_{key}", f"{node}.{key}", force)
 
 
-def weights(node: str, mass: RigidMass, sense: int, gravity: tuple[float, float, float], spins: bool) -> Iterator[Element]:
+def weights(node: str, mass: RigidMass, sense: int, gravity: tuple[float, float, float], is_rotor: bool) -> Iterator[Element]:
     """Weight of a station: m g at the centre, the moments of a centre of mass off the reference point.
 
     First order in tilt and eccentricity: the product of both is left out.
+    is_rotor : whether it is a free rigid body; else the moments come with the matrix of its lever
     """
     names = coordinate_names(node)
     force = [mass.mass * value for value in gravity]
-    moments = {0: force[0], 1: force[1], 2: force[2], 3: -mass.centre[2] * force[1], 4: mass.centre[2] * force[0]}
+    moments = {0: force[0], 1: force[1], 2: force[2]}
+    if is_rotor:
+        moments |= {3: -mass.centre[2] * force[1], 4: mass.centre[2] * force[0]}
     for k, value in moments.items():
         if value != 0.0:
             yield AppliedTorque(f"{names[k]}.weight", names[k], _constant(value))
     ex, ey = mass.centre[:2]
-    if spins and (ex or ey) and (force[0] or force[1]):
+    if is_rotor and (ex or ey) and (force[0] or force[1]):
 
         def torque(moment: Moment) -> Value:
             angle = sense * moment.angle(node)
@@ -162,7 +178,7 @@ def station_channels(place: str, names: Mapping[str, Mapping[str, float]], centr
     for key, factors in names.items():
         slope, unit = f"{place}.{key}_rate", UNITS[key]
         channels += [
-            Channel(f"{place}.{key}", unit, f"{WORDS[key]} of {place}", _sum(factors, "angles"), slope),
+            Channel(f"{place}.{key}", unit, f"{WORDS[key]} of {place}", _sum(factors, "angles"), slope, factors),
             Channel(slope, f"{unit}/s", f"rate of the {WORDS[key]} of {place}", _sum(factors, "speeds"), f"{place}.{key}_acceleration"),
         ]
     x, y = _sum(names["x"], "angles"), _sum(names["y"], "angles")

@@ -367,7 +367,8 @@ def test_a_fit_to_measured_points_that_dip_is_the_best_rising_cubic() -> None:
         constraints={"type": "ineq", "fun": lambda k: slopes @ k},
         options={"maxiter": 500, "ftol": 1e-14},
     )
-    assert best.success
+    # its last line search may end on rounding; what counts is that the point keeps to the constraint
+    assert np.min(slopes @ best.x) >= -1e-9 * 40.0
     # the smallest slope is known to a grid of 0.01 in both: off by 0.005^2/2 times its curvature 6 k3 = 550, so by 0.007,
     # 2e-4 of the mean slope of 40 N m, and the sum of squares by a like share
     assert float(np.sum((fitted - torque) ** 2)) == pytest.approx(best.fun, rel=1e-3)

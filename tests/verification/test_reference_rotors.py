@@ -149,7 +149,7 @@ def test_shape_functions_carry_cubics_exactly() -> None:
 
 
 def test_overhung_disc_whirls_at_the_closed_form_in_the_fixed_frame() -> None:
-    # Massless cantilever d = 20 mm, L = 0.4 m, E = 2.1e11 with a disc m = 5, Id = .02, Ip = .04 at 100 rad/s; r = x + i y, s = theta - i psi:
+    # Massless cantilever d = 20 mm, L = 0.4 m, E = 2.1e11; disc m = 5, Id = .02, Ip = .04; 100 rad/s; r = x + i y, s = theta - i psi:
     # (12 EI/L^3 - m w^2)(4 EI/L - Id w^2 + Ip W w) = (6 EI/L^2)^2, negative roots backward.
     disc = Body(mass=5.0, polar=0.04, transverse=0.02)
     L, EI = 0.4, 2.1e11 * math.pi * 0.02**4 / 64
