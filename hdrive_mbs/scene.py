@@ -204,7 +204,7 @@ def describe(scene: Scene) -> str:
         lines.append("  effects")
         lines += [f"    {placed.name} at {placed.at}: {placed.effect.describe()}" for placed in scene.effects]
     try:
-        bodies = scene.network().bodies
+        bodies = [body for body in scene.network().bodies if not body.lateral]
     except HdriveError as error:
         return "\n".join([*lines, f"  it cannot be solved: {error}"])
     width = max(len(body.name) for body in bodies)

@@ -10,7 +10,8 @@ import numpy as np
 from hdrive_mbs.components.component import Component, Flange
 from hdrive_mbs.components.motor import Motor
 from hdrive_mbs.errors import SceneError, unknown_place
-from hdrive_mbs.network.draft import Draft, Node
+from hdrive_mbs.network.draft import Draft
+from hdrive_mbs.network.node import Node
 from hdrive_mbs.network.rigid_mass import NOTHING, RigidMass
 
 GROUND = "ground"
@@ -178,6 +179,13 @@ def _positions(parts: Mapping[str, Component], connections: Sequence[Sequence[st
             reached = _walk(path, steps, rigid=False)
             lowest = min(reached.values())
             found |= {name: value - lowest for name, value in reached.items()}
+    for left, right, distance, _ in steps:
+        apart = found[right] - found[left]
+        if abs(apart - distance) > 1e-9 * max(abs(distance), *found.values()):
+            raise SceneError(
+                f"{left!r} and {right!r} lie {distance:g} m apart by this connection and {apart:g} m by another one, so the shaft does "
+                "not close. A chain goes towards +z; correct the lengths of the sections or the order of the places."
+            )
     return found
 
 

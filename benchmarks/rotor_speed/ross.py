@@ -22,7 +22,7 @@ def ross_python(given: Path | None) -> Path | None:
     named = given or (Path(os.environ[VARIABLE]) if os.environ.get(VARIABLE) else None)
     if named is not None and not named.is_file():
         raise FileNotFoundError(
-            f"No Python at {named}, which --ross-python or {VARIABLE} names. README.md beside this file says how to make ROSS's environment."
+            f"No Python at {named}, which --ross-python or {VARIABLE} names. README.md beside this file says how to make the environment."
         )
     return None if named is None else named.absolute()  # not resolved: a link into an environment selects that environment
 

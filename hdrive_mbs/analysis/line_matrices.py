@@ -148,11 +148,26 @@ class LineMatrices:
                 sides = []
                 for sign in (1.0, -1.0):
                     moved = {**values, name: values[name] + sign * h}
-                    there = Moment(**{"time": moment.time, "angles": moment.angles, "speeds": moment.speeds, "states": moment.states, kind: moved})
+                    there = Moment(
+                        **{"time": moment.time, "angles": moment.angles, "speeds": moment.speeds, "states": moment.states, kind: moved}
+                    )
                     sides.append(element.contribution(there))
                 for target, up in sides[0].items():
                     if target in self._index:
                         matrix[self._index[target], column] -= (float(up) - float(sides[1][target])) / (2.0 * h)
+
+    def varying(self) -> dict[str, set[str]]:
+        """Lateral coordinates whose slopes depend on the state -> the variables they depend on (``speed:rotor``); none for a linear line."""
+        lateral = {body.name for body in self.network.bodies if body.lateral}
+        found: dict[str, set[str]] = {}
+        for slope in self._slopes:
+            if self.names[slope.row] in lateral and self.names[slope.column] in lateral:
+                found.setdefault(self.names[slope.row], set()).update(variables(slope.value))
+        moment = self.network.moment(np.float64(0.0), *[dict.fromkeys(self.names, np.float64(0.0))] * 2, {s.name: s.initial for s in self.network.states})
+        for element in self._plain:
+            for name in lateral & set(element.contribution(moment)):
+                found.setdefault(name, set())
+        return found
 
     def forces(self, angles: Mapping[str, float], speeds: Mapping[str, float], states: Mapping[str, float] | None = None) -> FloatArray:
         """Forces on all coordinates with nothing accelerating [N, N m], shape (n,); of balanced, upright rotors."""

@@ -11,9 +11,10 @@ import numpy.typing as npt
 from hdrive_mbs.bearings.law import DIRECTIONS, BearingLaw, RelativeMotion
 from hdrive_mbs.components.component import Component, Flange
 from hdrive_mbs.components.housing import Housing
-from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.errors import LawError, ParameterError
 from hdrive_mbs.expression import Value
-from hdrive_mbs.network.draft import Draft, Torque
+from hdrive_mbs.network.connection_draft import Torque
+from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.rigid_mass import RigidMass
 from hdrive_mbs.network.station import Station
@@ -76,9 +77,7 @@ def add_housing(name: str, draft: Draft, housing: Housing | None) -> tuple[str, 
     ):
         coordinate = draft.add_coordinate(f"{name}.housing.{key}", inertia=housing.mass, unit="m", doc=f"housing of {name} in {key}")
         names.append(coordinate)
-        draft.add_matrix(
-            f"{name}.foundation_{key}", (), (coordinate,), stiffness=np.array([[stiffness]]), damping=np.array([[damping]])
-        )
+        draft.add_matrix(f"{name}.foundation_{key}", (), (coordinate,), stiffness=np.array([[stiffness]]), damping=np.array([[damping]]))
         if power != 0.0:
             draft.add_relative_torque(f"{name}.foundation_{key}_power", {coordinate: 1.0}, _power_law(power, int(housing.power)))
     return tuple(names)
@@ -134,6 +133,8 @@ def add_bearing(name: str, draft: Draft, station: Station, law: BearingLaw, stre
     names = (*station.names[:5], *extra)
     rows = np.array([[0.0 if c == "ground" else stretches[d].get(c, 0.0) for c in names] for d in DIRECTIONS])
     rows[5] = 0.0
+    if any(matrix[5].any() or matrix[:, 5].any() for matrix in (stiffness, damping)):
+        raise LawError(f"{name!r}: the matrices of {type(law).__name__} have entries for phi; torque about the axis belongs into forces().")
     if stiffness.any() or damping.any():
         draft.add_coordinate_matrix(f"{name}.coefficients", names, stiffness=rows.T @ stiffness @ rows, damping=rows.T @ damping @ rows)
 

@@ -13,7 +13,8 @@ from hdrive_mbs.quantities import parameter
 class Gravity(Component):
     """Weight of rotors, rings, housings and shafts with mass; by default along -y, which is down.
 
-    An eccentric rotor also feels m g e cos(phi) about its axis.
+    An eccentric rotor also feels m g e cos(phi) about its axis.  First order in tilts and eccentricity; of gravity
+    along the axis only the force is kept, not the moments it has on what tilts or is eccentric.
     """
 
     x: float = parameter("m/s^2", "acceleration in x", default=0.0)

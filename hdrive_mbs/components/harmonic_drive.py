@@ -12,7 +12,8 @@ from hdrive_mbs.components.component import Component, Flange
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.flexsplines.law import StiffnessFunction, StiffnessLaw
-from hdrive_mbs.network.draft import Draft, Torque
+from hdrive_mbs.network.connection_draft import Torque
+from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.quantities import option, parameter
 from hdrive_mbs.teeth.gear import WaveGear

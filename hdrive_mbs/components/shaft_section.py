@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, replace
 
 from hdrive_mbs.components.component import Component, Flange
@@ -93,7 +94,7 @@ class ShaftSection(Component):
             position = start + self.length * k / count
             stations.append(draft.add_station(f"{name}.{k}", end + end, like=inner, position=position))
         stations.append(last)
-        for k, (a, b) in enumerate(zip(stations[:-1], stations[1:], strict=True), start=1):
+        for k, (a, b) in enumerate(itertools.pairwise(stations), start=1):
             self._add_element(name if count == 1 else f"{name}.element_{k}", draft, a, b)
 
     def _add_element(self, name: str, draft: Draft, a: Station, b: Station) -> None:

@@ -18,8 +18,9 @@ from typing import ClassVar
 
 from hdrive_mbs.errors import PlaceError
 from hdrive_mbs.expression import Value
-from hdrive_mbs.network.draft import Draft, Node
+from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.node import Node
 from hdrive_mbs.quantities import Described
 
 

@@ -153,7 +153,9 @@ class _Builder:
         tensor = np.array(rotor.body.inertia)
         six = [tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[1, 2], tensor[0, 2], tensor[0, 1]]
         self.mbs.AddObject(
-            item.ObjectRigidBody(nodeNumber=node, mass=rotor.body.mass, centerOfMass=list(rotor.body.centre), inertia=[float(v) for v in six])
+            item.ObjectRigidBody(
+                nodeNumber=node, mass=rotor.body.mass, centerOfMass=list(rotor.body.centre), inertia=[float(v) for v in six]
+            )
         )
         for k, name in enumerate(rotor.coordinates):
             self.nodes[name] = node
@@ -382,7 +384,9 @@ class _Builder:
         first = {int(node): name for name, node in reversed(self.nodes.items()) if not name.endswith("~")}
         sensors = {
             name: tuple(
-                self.mbs.AddSensor(item.SensorNode(nodeNumber=self.nodes[name], outputVariableType=kind, storeInternal=True, writeToFile=False))
+                self.mbs.AddSensor(
+                    item.SensorNode(nodeNumber=self.nodes[name], outputVariableType=kind, storeInternal=True, writeToFile=False)
+                )
                 for kind in kinds
             )
             for name in reversed(first.values())

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from hdrive_mbs.expression import Value
-from hdrive_mbs.network.draft import Draft, Node
+from hdrive_mbs.network.draft import Draft
+from hdrive_mbs.network.node import Node
 from hdrive_mbs.quantities import Described, option
 
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from hdrive_mbs.motors.commanded import CommandedMotor
 from hdrive_mbs.motors.speed_loop import SpeedLoop
-from hdrive_mbs.network.draft import Draft, Node
+from hdrive_mbs.network.draft import Draft
+from hdrive_mbs.network.node import Node
 
 
 @dataclass(frozen=True, kw_only=True)

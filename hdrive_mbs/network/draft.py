@@ -8,19 +8,22 @@ also ``station``, ``add_station``, ``add_coordinate``, ``add_matrix`` and ``add_
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.errors import LawError, PlaceError, SceneError, unknown_place
 from hdrive_mbs.expression import TraceError, Value, gradient
+from hdrive_mbs.network.channels import Reading, body_channels, connection_channels, resolved_channels
+from hdrive_mbs.network.connection_draft import ConnectionDraft, Torque
 from hdrive_mbs.network.coupling import Coupling, Forces
-from hdrive_mbs.network.elements import AppliedTorque, Claim, Connection, Element, KinematicTerm, StateRate
+from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, StateRate
 from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Body, Channel, Motion, Network, Rotor, State
-from hdrive_mbs.network.rigid_mass import NOTHING, RigidMass
+from hdrive_mbs.network.node import Node
+from hdrive_mbs.network.rigid_mass import RigidMass
 from hdrive_mbs.network.station import (
     LATERAL,
     Station,
@@ -30,87 +33,7 @@ from hdrive_mbs.network.station import (
     weights,
 )
 
-Torque = Callable[[Moment, Value, Value], Value]
-
-
-@dataclass
-class ConnectionDraft:
-    """A connection that effects may still change.
-
-    ``law(moment, stretch, rate)`` is the constitutive law; ``parallel`` holds torques that act
-    beside it; ``terms`` are kinematic errors that add to the stretch; ``bodies`` names the body at
-    each flange.
-    """
-
-    name: str
-    factors: dict[str, float]
-    law: Torque
-    parallel: list[tuple[str, Torque]] = field(default_factory=list)
-    terms: list[KinematicTerm] = field(default_factory=list)
-    bodies: dict[str, str] = field(default_factory=dict)
-    claims: list[Claim] = field(default_factory=list)
-
-    def wrap(self, change: Callable[[Torque], Torque]) -> None:
-        """Replace the law by ``change(law)``."""
-        self.law = change(self.law)
-
-    def claim(self, name: str, torque: Torque, stored: Callable[[Moment], Value] | None = None) -> None:
-        """Promise that a torque inside this connection is dissipative (checked when the scene is assembled)."""
-
-        def power(moment: Moment) -> Value:
-            whole = self.build()
-            rate = whole.rate(moment)
-            return torque(moment, whole.stretch(moment), rate) * rate
-
-        self.claims.append(Claim(name, power, stored))
-
-    def build(self) -> Connection:
-        law, parallel = self.law, tuple(torque for _, torque in self.parallel)
-
-        def total(moment: Moment, stretch: Value, rate: Value) -> Value:
-            torque = law(moment, stretch, rate)
-            for extra in parallel:
-                torque = torque + extra(moment, stretch, rate)
-            return torque
-
-        return Connection(self.name, dict(self.factors), total if parallel else law, tuple(self.terms), parts=tuple(self.claims))
-
-
-@dataclass
-class Reading:
-    """A channel looked up by name when the network is finished; call it with a moment."""
-
-    quantity: str
-    asked_by: str
-    hint: str = ""
-    channel: Channel | None = None
-
-    def __call__(self, moment: Moment) -> Value:
-        if self.channel is None:
-            raise SceneError(f"{self.asked_by} reads {self.quantity!r} before the network is finished.")
-        return self.channel.read(moment)
-
-
 FloatArray = npt.NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Node:
-    """A place where flanges are rigidly connected.
-
-    inertia : about the axis, of all parts there [kg m^2]
-    lateral : whether it moves across the axis too; then ``mass`` is its body and ``position`` [m] lies on the axis
-    is_rotor : a rigid body with all its couplings, not a station with small tilts
-    """
-
-    name: str
-    inertia: float
-    sense: int
-    ratio: float
-    lateral: bool = False
-    mass: RigidMass = NOTHING
-    is_rotor: bool = False
-    position: float = 0.0
 
 
 class Draft:
@@ -261,7 +184,10 @@ class Draft:
         for k, station in enumerate(stations):
             arm[6 * k : 6 * k + 6, 6 * k : 6 * k + 6] = station.arm()
         zero = np.zeros_like(stiffness)
-        matrices = [arm.T @ np.asarray(item, float) @ arm for item in (zero if mass is None else mass, zero if damping is None else damping, stiffness)]
+        matrices = [
+            arm.T @ np.asarray(item, float) @ arm
+            for item in (zero if mass is None else mass, zero if damping is None else damping, stiffness)
+        ]
         spins = {station.names[5] for station in stations}
         used = list(dict.fromkeys(item for item in names if item != "ground" and item not in spins))
         gather = np.array([[float(item == kept) for kept in used] for item in names])
@@ -287,7 +213,9 @@ class Draft:
         self._elements.append(element)
 
     def set_gravity(self, acceleration: tuple[float, float, float]) -> None:
-        """Gravity for all lateral motion [m/s^2]."""
+        """Gravity for all lateral motion [m/s^2].  Raises SceneError when the scene has one already."""
+        if self._gravity != (0.0, 0.0, 0.0):
+            raise SceneError("The scene has more than one Gravity part; one is for all parts, so remove the others.")
         self._gravity = acceleration
 
     def motor_torque(self, place: str, asked_by: str = "This") -> Callable[[Moment], Value]:
@@ -392,15 +320,26 @@ class Draft:
                     f"Both ends of {connection.name!r} are joined to {next(iter(connection.factors))!r}, so it can never twist. "
                     "Connect one end to another body, or remove it."
                 )
-        prescribed = {motion.name: motion for motion in motions}
-        channels = list(self._body_channels(prescribed)) + self._station_channels() + list(self._connection_channels(connections))
+        channels = body_channels(self._nodes, self._flanges) + self._station_channels() + connection_channels(connections)
         channels += self._channels.values()
         elements: tuple[Element, ...] = (*connections, *self._elements)
         self._finished = elements
-        resolved = self._resolved(channels)
-        positions = {place: self._nodes[node].position + self._offsets.get(place, 0.0) for place, node in self._flanges.items() if self._nodes[node].lateral}
+        resolved = resolved_channels(channels, self._readings, self._sources)
+        positions = {
+            place: self._nodes[node].position + self._offsets.get(place, 0.0)
+            for place, node in self._flanges.items()
+            if self._nodes[node].lateral
+        }
         return Network(
-            tuple(bodies), tuple(motions), tuple(self._states.values()), elements, resolved, dict(self._flanges), tuple(rotors), positions, self._gravity
+            tuple(bodies),
+            tuple(motions),
+            tuple(self._states.values()),
+            elements,
+            resolved,
+            dict(self._flanges),
+            tuple(rotors),
+            positions,
+            self._gravity,
         )
 
     def _finish_station(self, node: Node, bodies: list[Body], rotors: list[Rotor]) -> None:
@@ -414,7 +353,13 @@ class Draft:
 
     def _check_masses(self, bodies: list[Body]) -> None:
         """Refuse a coordinate that nothing accelerates."""
-        heavy = {name for item in self._elements if isinstance(item, MatrixElement) for name, value in zip(item.coordinates, np.diag(item.mass), strict=True) if value > 0.0}
+        heavy = {
+            name
+            for item in self._elements
+            if isinstance(item, MatrixElement)
+            for name, value in zip(item.coordinates, np.diag(item.mass), strict=True)
+            if value > 0.0
+        }
         for body in bodies:
             if not body.inertia > 0.0 and body.name not in heavy:
                 unit = "kg" if body.unit == "m" else "kg m^2"
@@ -452,51 +397,6 @@ class Draft:
             channels += station_channels(place, {key: station.stretch(key) for key in LATERAL}, centre, node_name, node.sense)
         return channels
 
-    def _resolved(self, channels: list[Channel]) -> tuple[Channel, ...]:
-        """The channels with those that read others connected to them."""
-        known = {channel.name: channel for channel in channels}
-        for reading in self._readings:
-            if reading.quantity not in known:
-                hint = f" {reading.hint}" if reading.hint else ""
-                raise PlaceError(
-                    f"{reading.asked_by} reads {reading.quantity!r}, which this scene does not have.{hint} Quantities: {', '.join(known)}."
-                )
-        for name in self._sources:
-            path = [name]
-            while path[-1] in self._sources:
-                path.append(self._sources[path[-1]].quantity)
-                if path[-1] in path[:-1]:
-                    raise SceneError(f"{' reads '.join(path)}: a reading cannot depend on itself.")
-            for link in reversed(path[:-1]):
-                known[link] = replace(known[link], unit=known[link].unit or known[self._sources[link].quantity].unit)
-        for reading in self._readings:
-            reading.channel = known[reading.quantity]
-        return tuple(known.values())
-
-    def _body_channels(self, prescribed: dict[str, Motion]) -> list[Channel]:
-        channels = []
-        for place, node_name in self._flanges.items():
-            if node_name == "ground" or (place != node_name and place.endswith((".a", ".b"))):
-                continue  # the ends of a shaft are the bodies that they are joined to
-            node = self._nodes[node_name]
-            channels += [
-                Channel(f"{place}.angle", "rad", f"angle of {place}, true sense", _angle(node), f"{place}.speed"),
-                Channel(f"{place}.speed", "rad/s", f"speed of {place}, true sense", _speed(node), f"{place}.acceleration"),
-            ]
-        return channels
-
-    @staticmethod
-    def _connection_channels(connections: list[Connection]) -> list[Channel]:
-        channels = []
-        for connection in connections:
-            name, rate = connection.name, f"{connection.name}.twist_rate"
-            channels += [
-                Channel(f"{name}.twist", "rad", f"elastic twist of {name}, positive when driving", connection.stretch, rate),
-                Channel(rate, "rad/s", f"rate of the twist of {name}", connection.rate),
-                Channel(f"{name}.torque", "N m", f"torque through {name}, positive when driving", connection.value),
-            ]
-        return channels
-
 
 def _constant(value: float) -> Callable[[Moment], Value]:
     return lambda moment: value + 0.0 * moment.time
@@ -504,11 +404,3 @@ def _constant(value: float) -> Callable[[Moment], Value]:
 
 def _at_rest(time: Value) -> Value:
     return 0.0 * time
-
-
-def _angle(node: Node) -> Callable[[Moment], Value]:
-    return lambda moment: node.sense * moment.angle(node.name)
-
-
-def _speed(node: Node) -> Callable[[Moment], Value]:
-    return lambda moment: node.sense * moment.speed(node.name)

@@ -169,7 +169,9 @@ def _constant(value: float) -> Callable[[Moment], Value]:
     return lambda moment: value + 0.0 * moment.time
 
 
-def station_channels(place: str, names: Mapping[str, Mapping[str, float]], centre: tuple[float, float] | None, spin: str, sense: int) -> list[Channel]:
+def station_channels(
+    place: str, names: Mapping[str, Mapping[str, float]], centre: tuple[float, float] | None, spin: str, sense: int
+) -> list[Channel]:
     """Displacements and tilts of a place, its distance from the axis, and those of its centre of mass.
 
     names : direction -> factors of coordinates; centre : of mass in the turning frame, None where it is on the axis
@@ -182,9 +184,7 @@ def station_channels(place: str, names: Mapping[str, Mapping[str, float]], centr
             Channel(slope, f"{unit}/s", f"rate of the {WORDS[key]} of {place}", _sum(factors, "speeds"), f"{place}.{key}_acceleration"),
         ]
     x, y = _sum(names["x"], "angles"), _sum(names["y"], "angles")
-    channels.append(
-        Channel(f"{place}.radial", "m", f"distance of the centre of {place} from the axis", lambda m: np.hypot(x(m), y(m)))
-    )
+    channels.append(Channel(f"{place}.radial", "m", f"distance of the centre of {place} from the axis", lambda m: np.hypot(x(m), y(m))))
     if centre is not None:
         ex, ey = centre
 
@@ -194,7 +194,9 @@ def station_channels(place: str, names: Mapping[str, Mapping[str, float]], centr
             py = y(moment) + ey * np.cos(angle) + ex * np.sin(angle)
             return np.hypot(px, py)
 
-        channels.append(Channel(f"{place}.mass_centre_radial", "m", f"distance of the centre of mass of {place} from the axis", radial_of_mass))
+        channels.append(
+            Channel(f"{place}.mass_centre_radial", "m", f"distance of the centre of mass of {place} from the axis", radial_of_mass)
+        )
     return channels
 
 
