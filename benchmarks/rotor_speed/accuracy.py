@@ -88,4 +88,4 @@ def frequency_errors(found: FloatArray, reference: FloatArray) -> FloatArray:
     """
     if found.shape != reference.shape:
         raise ValueError(f"Frequencies of shape {found.shape} cannot be matched with {reference.shape}: same speeds, same number of modes.")
-    return np.abs(np.sort(np.abs(found), axis=1) / np.sort(np.abs(reference), axis=1) - 1.0)
+    return np.asarray(np.abs(np.sort(np.abs(found), axis=1) / np.sort(np.abs(reference), axis=1) - 1.0))

@@ -66,10 +66,10 @@ def _element(length: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     inverting the cubic's values at the ends; the integrals are Gauss's with 4 points, exact to degree 7.
     """
     flexibility = BENDING / SHEAR / length**2
-    powers = np.arange(4)
+    powers = np.arange(4.0)
 
     def displacement(u: float) -> FloatArray:
-        return u**powers
+        return np.asarray(u**powers)
 
     def slope(u: float) -> FloatArray:
         return np.array([0.0, 1.0, 2.0 * u, 3.0 * u**2 + 6.0 * flexibility]) / length

@@ -134,30 +134,35 @@ def _branches(result: Any) -> dict[str, Any]:
 
 
 def run_ups(ross: Any, steps: Sequence[int], repeats: int, folder: Path) -> list[dict[str, Any]]:
-    """run_time_response along the ramp, with and without ROSS's stiffness from the angular acceleration (Ksdt)."""
+    """run_time_response along the ramp: as it comes, without its term from the angular acceleration, and reduced."""
+    ways: list[tuple[str, str, Callable[[Any], dict[str, Any]], float]] = [
+        ("run_time_response", "", lambda rotor: {}, -1.0),
+        ("run_time_response, without Ksdt", "_without_ksdt", lambda rotor: {"Ksdt": np.zeros((rotor.ndof, rotor.ndof))}, 0.0),
+        ("run_time_response, Guyan reduction", "_guyan", lambda rotor: {"model_reduction": {"method": "guyan"}}, -1.0),
+    ]
     found = []
     stations = data.disc_stations(data.RAMP_ELEMENTS)
     for number in steps:
         times = np.linspace(0.0, data.RAMP_DURATION, number + 1)
         speed = data.HIGHEST_SPEED * times / data.RAMP_DURATION
-        for with_term in (True, False):
+        for way, mark, options, transient_term in ways:
             calls, forces, motion = [], [], np.empty(0)
             for _ in range(1 + repeats):
                 rotor = build(ross, data.RAMP_ELEMENTS, data.BEARING_DAMPING)
                 start = time.process_time()
                 force = rotor.unbalance_force_over_time([stations[0]], [data.UNBALANCE], [0.0], speed, times).T
                 middle = time.process_time()
-                extra = {} if with_term else {"Ksdt": np.zeros((rotor.ndof, rotor.ndof))}
-                motion = rotor.run_time_response(speed, force, times, **extra).yout
+                motion = rotor.run_time_response(speed, force, times, **options(rotor)).yout
                 calls.append(time.process_time() - middle)
                 forces.append(middle - start)
-            name = f"ross_run_up_{number}{'' if with_term else '_without_ksdt'}.npz"
             rows = [[station * rotor.number_dof + axis for axis in (0, 1)] for station in stations]
+            name = f"ross_run_up_{number}{mark}.npz"
             np.savez_compressed(folder / name, times=times, displacements=np.moveaxis(motion[:, rows], 0, -1))
             found.append(
                 {
                     "steps": number,
-                    "ksdt": with_term,
+                    "way": way,
+                    "transient_term": transient_term,  # of the equations that it solves: benchmarks.rotor_speed.run_up
                     "degrees_of_freedom": rotor.ndof,
                     "force_seconds": forces[1:],
                     "first_seconds": calls[0],
@@ -165,7 +170,7 @@ def run_ups(ross: Any, steps: Sequence[int], repeats: int, folder: Path) -> list
                     "file": name,
                 }
             )
-            print(f"run-up, {number} steps{'' if with_term else ', without Ksdt'}: first {calls[0]:.2f} s, then {min(calls[1:]):.3f} s")
+            print(f"{number} steps, {way}: first {calls[0]:.2f} s, then {min(calls[1:]):.3f} s")
     return found
 
 

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from hdrive_mbs.analysis.elastic_law import ElasticLaw
 from hdrive_mbs.analysis.result import Result
-from hdrive_mbs.analysis.time_response import Response, read_over
+from hdrive_mbs.analysis.stored_energy import power_of, stored_energy
+from hdrive_mbs.analysis.time_response import Response, channel_of, read_over
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.expression import Value
-from hdrive_mbs.network.elements import AppliedTorque, Connection
+from hdrive_mbs.network.coupling import Gyroscope
+from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, StateRate
+from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.signals import FloatArray
@@ -29,14 +32,20 @@ class EnergyBalance(Result):
     kinetic : kinetic energy of all bodies [J]
     work : element -> energy it has taken from the bodies since the start [J]; negative where it drives
     driven : prescribed place -> work that its drive has done since the start [J]
-    stored : connection -> recoverable elastic energy [J], with what its effects hold in states
-    dissipated : connection -> energy turned into heat since the start [J]: work less growth of stored
+    stored : element -> recoverable energy [J]: elastic, of height, and what effects hold in states
+    dissipated : element -> energy turned into heat since the start [J]: work less growth of stored.  A bearing whose
+        forces have no potential (sliding bearings) has work only; one with cross-coupled stiffness, and a shaft with
+        rotating damping, can deliver energy, so theirs may be negative
     energy_residual : kinetic - initial kinetic + sum(work) - sum(driven) [J]: zero for an exact solution
     momentum : angular momentum of all bodies about the common axis, true sense [N m s]
     impulse : source -> impulse of each outer torque since the start, true sense [N m s]: torques on bodies, and
         the reactions of the ground (housings) and of prescribed places
     momentum_residual : momentum - initial momentum - sum(impulse) [N m s]
     energy_scale, momentum_scale : the largest energy and angular momentum that occur, for comparison
+
+    Where places move across the axis (rotor lines) momentum is not balanced: bearings put forces at a distance from
+    the axis, which act about it too.  Its arrays are empty there, ``impulse`` has no entries, ``momentum_scale`` is nan.
+    A prescribed rotor does the work of its unbalance through the forces ``<rotor>.unbalance_...`` in ``work``.
     """
 
     times: FloatArray
@@ -59,19 +68,24 @@ class EnergyBalance(Result):
 
     @property
     def momentum_error(self) -> float:
-        """Largest momentum residual over the largest momentum."""
+        """Largest momentum residual over the largest momentum.  Raises AnalysisError for a rotor line."""
+        if not len(self.momentum):
+            raise AnalysisError("Angular momentum is not balanced for rotor lines: bearings act about the axis too. Use energy_error.")
         return float(np.max(np.abs(self.momentum_residual))) / self.momentum_scale
 
     @property
     def total(self) -> FloatArray:
-        """Kinetic plus recoverable elastic energy [J]: constant when nothing drives, loads or damps."""
+        """Kinetic plus recoverable energy [J]: constant when nothing drives, loads or damps."""
         return self.kinetic + sum(self.stored.values(), np.zeros_like(self.kinetic))
 
     def columns(self) -> dict[str, np.ndarray]:
         table = {"time [s]": self.times, "kinetic [J]": self.kinetic}
         for title, values in (("work of", self.work), ("driven by", self.driven), ("stored in", self.stored), ("heat of", self.dissipated)):
             table |= {f"{title} {name} [J]": column for name, column in values.items()}
-        table |= {"energy residual [J]": self.energy_residual, "angular momentum [N m s]": self.momentum}
+        table["energy residual [J]"] = self.energy_residual
+        if not len(self.momentum):
+            return table
+        table["angular momentum [N m s]"] = self.momentum
         table |= {f"impulse of {name} [N m s]": column for name, column in self.impulse.items()}
         return table | {"momentum residual [N m s]": self.momentum_residual}
 
@@ -83,7 +97,8 @@ def energy_balance(response: Response) -> EnergyBalance:
     speed and acceleration at both ends), and powers and torques are integrated with four Gauss points.
     That is of order 5, no lower than any of the solvers, so the residuals show the error of the
     solver; only in the steps in which a law jumps the quadrature has an error of its own.  The elastic
-    energy of a connection is the area under its law at rest.
+    energy of a connection is the area under its law at rest; of a bearing law the work of its forces at rest.
+    Rotor lines have a balance of energy only (see EnergyBalance).
 
     Raises AnalysisError for a response without its scene, or recorded more coarsely than the
     solver's own steps.
@@ -105,20 +120,23 @@ def energy_balance(response: Response) -> EnergyBalance:
         return np.concatenate([[0.0], np.cumsum(0.5 * width * (at @ _WEIGHTS))])
 
     kinetic = read_over(network.kinetic_energy, ends)
-    working = [element for element in network.elements if isinstance(element, (Connection, AppliedTorque))]
-    connections = [element for element in working if isinstance(element, Connection)]
-    work = {element.name: integral(element.power) for element in working}
+    zero = np.zeros_like(kinetic)
+    working = _working(network)
+    work = {element.name: integral(power_of(element)) for element in working}
     driven = {
-        motion.name: integral(lambda m, n=motion.name: -_on(network, m, n) * m.speed(n))  # type: ignore[misc]
+        motion.name: integral(lambda m, n=motion.name: -_on(working, m, n) * m.speed(n))  # type: ignore[misc]
         for motion in network.motions
         if motion.name != "ground"
     }
-    stored = {element.name: _stored(network, element, ends) for element in connections}
+    held = {element.name: stored_energy(network, element, ends) for element in working}
+    stored = {name: energy for name, energy in held.items() if energy is not None}
     dissipated = {name: work[name] - (stored[name] - stored[name][0]) for name in stored}
-    momentum = read_over(lambda m: sum(body.sense * body.inertia * m.speed(body.name) for body in network.bodies), ends)
-    impulse = _impulses(network, integral)
-    everything = [kinetic, *work.values(), *driven.values(), *stored.values()]
-    zero = np.zeros_like(kinetic)
+    momentum, impulse, imbalance, scale = np.zeros(0), dict[str, FloatArray](), np.zeros(0), math.nan
+    if not network.is_lateral:
+        momentum = read_over(lambda m: sum(body.sense * body.inertia * m.speed(body.name) for body in network.bodies), ends)
+        impulse = _impulses(network, integral)
+        imbalance = momentum - momentum[0] - sum(impulse.values(), zero)
+        scale = _largest([momentum, *impulse.values(), read_over(lambda m: _moved(network, m), ends)])
     return EnergyBalance(
         scene=response.scene,
         status=response.status,
@@ -132,10 +150,17 @@ def energy_balance(response: Response) -> EnergyBalance:
         energy_residual=kinetic - kinetic[0] + sum(work.values(), zero) - sum(driven.values(), zero),
         momentum=momentum,
         impulse=impulse,
-        momentum_residual=momentum - momentum[0] - sum(impulse.values(), zero),
-        energy_scale=_largest(everything),
-        momentum_scale=_largest([momentum, *impulse.values(), read_over(lambda m: _moved(network, m), ends)]),
+        momentum_residual=imbalance,
+        energy_scale=_largest([kinetic, *work.values(), *driven.values(), *stored.values()]),
+        momentum_scale=scale,
     )
+
+
+def _working(network: Network) -> list[Element]:
+    """Elements that can do work: all but equations of states, gyroscopic moments and matrices of mass alone."""
+    idle = (StateRate, Gyroscope)
+    found = [element for element in network.elements if not isinstance(element, idle)]
+    return [e for e in found if not isinstance(e, MatrixElement) or e.stiffness.any() or e.damping.any()]
 
 
 def _largest(columns: list[FloatArray]) -> float:
@@ -148,13 +173,9 @@ def _moved(network: Network, moment: Moment) -> Value:
     return sum(body.inertia * np.abs(moment.speed(body.name)) for body in network.bodies)
 
 
-def _on(network: Network, moment: Moment, name: str) -> Value:
+def _on(elements: list[Element], moment: Moment, name: str) -> Value:
     """Sum of all torques on a coordinate, forward sense (also on one that is prescribed)."""
-    total: Value = 0.0 * moment.time
-    for element in network.elements:
-        if isinstance(element, (Connection, AppliedTorque)):
-            total = total + element.contribution(moment).get(name, 0.0)
-    return total
+    return sum((element.contribution(moment).get(name, 0.0) for element in elements), 0.0 * moment.time)
 
 
 def _impulses(network: Network, integral: Callable[[Callable[[Moment], Value]], FloatArray]) -> dict[str, FloatArray]:
@@ -194,7 +215,7 @@ def _moments(network: Network, response: Response) -> tuple[Moment, Moment]:
     states: dict[str, FloatArray] = {}
     states_inside: dict[str, FloatArray] = {}
     for body in network.bodies:
-        q, w, a = (body.sense * response.values[f"{body.name}.{kind}"] for kind in ("angle", "speed", "acceleration"))
+        q, w, a = (body.sense * response.values[channel_of(body, kind)] for kind in ("angle", "speed", "acceleration"))
         angles[body.name], speeds[body.name] = q, w
         angles_inside[body.name], speeds_inside[body.name] = _quintic(times, q, w, a)
     for state in network.states:
@@ -227,20 +248,3 @@ def _quintic(times: FloatArray, q: FloatArray, w: FloatArray, a: FloatArray) -> 
     value = q0 + s * (h * w0 + s * (0.5 * h**2 * a0 + s * (c3 + s * (c4 + s * c5))))
     slope = w0 + s * h * a0 + s**2 * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)) / h
     return value.ravel(), slope.ravel()
-
-
-def _stored(network: Network, connection: Connection, ends: Moment) -> FloatArray:
-    """Area under the law at rest from zero twist, plus the energy that its effects hold in states."""
-    law = ElasticLaw.of(network, connection.name)
-    twist = read_over(connection.stretch, ends)
-    fine = np.linspace(twist.min(), twist.max(), 2001)  # so that corners of the law lie in short intervals
-    marks, place = np.unique(np.concatenate([[0.0], fine, twist]), return_inverse=True)
-    half = 0.5 * np.diff(marks)
-    points = marks[:-1, None] + half[:, None] * (1.0 + _NODES)
-    area = np.concatenate([[0.0], np.cumsum(half * (law.torque(points) @ _WEIGHTS))])
-    area -= area[np.searchsorted(marks, 0.0)]
-    energy = area[place[-len(twist) :]]
-    for claim in connection.parts:
-        if claim.stored is not None:
-            energy = energy + read_over(claim.stored, ends)
-    return np.asarray(energy, float)

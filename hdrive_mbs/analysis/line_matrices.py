@@ -47,6 +47,18 @@ class _Slope:
     value: Expression
 
 
+@dataclass(frozen=True, eq=False)
+class _Spinning:
+    """What grows with a forward spin speed: a gyroscope in damping, circulation in stiffness."""
+
+    spin: str
+    kind: str
+    at: tuple[npt.NDArray[np.intp], ...]
+    """Rows and columns, as of np.ix_."""
+    matrix: FloatArray
+    """Per unit speed."""
+
+
 class LineMatrices:
     """The linearised line, built once and evaluated at many states.
 
@@ -60,7 +72,7 @@ class LineMatrices:
         n = len(self.names)
         self.mass = network.constant_mass.copy()
         self._damping, self._stiffness = np.zeros((n, n)), np.zeros((n, n))
-        self._spinning: list[tuple[str, str, FloatArray]] = []  # spin, "damping" or "stiffness", matrix per unit forward speed
+        self._spinning: list[_Spinning] = []
         self._slopes: list[_Slope] = []
         self._plain: list[Element] = []
         for rotor in network.rotors:
@@ -79,18 +91,15 @@ class LineMatrices:
         elif isinstance(element, Gyroscope):
             self._add_gyroscope(element.psi, element.theta, element.spin, element.polar)
         elif isinstance(element, Circulation):
-            whole = np.zeros_like(self._stiffness)
             at = np.ix_(*[[self._index[name] for name in element.coordinates]] * 2)
-            whole[at] = element.circulatory / len(element.spins)
-            self._spinning += [(spin, "stiffness", sense * whole) for spin, sense in element.spins]
+            share = element.circulatory / len(element.spins)
+            self._spinning += [_Spinning(spin, "stiffness", at, sense * share) for spin, sense in element.spins]
         elif not isinstance(element, StateRate):
             self._add_law(element)
 
     def _add_gyroscope(self, psi: str, theta: str, spin: str, polar: float) -> None:
-        whole = np.zeros_like(self._damping)
-        a, b = self._index[psi], self._index[theta]
-        whole[a, b], whole[b, a] = polar, -polar
-        self._spinning.append((spin, "damping", whole))
+        at = np.ix_(*[[self._index[psi], self._index[theta]]] * 2)
+        self._spinning.append(_Spinning(spin, "damping", at, polar * np.array([[0.0, 1.0], [-1.0, 0.0]])))
 
     def _add_law(self, element: Element) -> None:
         traced: dict[str, Value] = {}
@@ -124,9 +133,9 @@ class LineMatrices:
         """The matrices at forward angles, speeds and states of the coordinates (time 0)."""
         damping, stiffness = self._damping.copy(), self._stiffness.copy()
         moment = self.network.moment(np.float64(0.0), angles, speeds, states or {})
-        for spin, kind, matrix in self._spinning:
-            target = damping if kind == "damping" else stiffness
-            target += float(moment.speed(spin)) * matrix
+        for part in self._spinning:
+            target = damping if part.kind == "damping" else stiffness
+            target[part.at] += float(moment.speed(part.spin)) * part.matrix
         if self._slopes:
             known: dict[str, Value] = {"t": moment.time}
             known |= {f"angle:{name}": value for name, value in moment.angles.items()}
@@ -155,6 +164,22 @@ class LineMatrices:
                 for target, up in sides[0].items():
                     if target in self._index:
                         matrix[self._index[target], column] -= (float(up) - float(sides[1][target])) / (2.0 * h)
+
+    def depends_on(self) -> frozenset[str] | None:
+        """Variables of the state that slopes depend on (``speed:rotor``, ``angle:rotor.x``), the spins of gyroscopes and
+        circulation apart; None where a law cannot be recorded, so that it is not known."""
+        return None if self._plain else frozenset().union(*(variables(slope.value) for slope in self._slopes))
+
+    def couplings(self) -> npt.NDArray[np.bool_]:
+        """Which coordinates act on which at any state, (n, n)."""
+        found: npt.NDArray[np.bool_] = np.full(self.mass.shape, bool(self._plain))
+        for matrix in (self.mass, self._damping, self._stiffness):
+            found |= matrix != 0.0
+        for part in self._spinning:
+            found[part.at] |= part.matrix != 0.0
+        for slope in self._slopes:
+            found[slope.row, slope.column] = True
+        return found
 
     def varying(self) -> dict[str, set[str]]:
         """Lateral coordinates whose slopes depend on the state -> the variables they depend on (``speed:rotor``); none for a linear line."""

@@ -79,8 +79,8 @@ class Response(Result):
         if history.slope is not None or network is None or channel is None:
             return history.at(times)
         wanted = np.asarray(times, float)
-        angles = {body.name: body.sense * self[_channel(body, "angle")].at(wanted) for body in network.bodies}
-        speeds = {body.name: body.sense * self[_channel(body, "speed")].at(wanted) for body in network.bodies}
+        angles = {body.name: body.sense * self[channel_of(body, "angle")].at(wanted) for body in network.bodies}
+        speeds = {body.name: body.sense * self[channel_of(body, "speed")].at(wanted) for body in network.bodies}
         states = {state.name: self[state.name].at(wanted) for state in network.states}
         return read_over(channel.read, network.moment(wanted, angles, speeds, states))
 
@@ -154,9 +154,10 @@ def simulate(
     return _response(scene, network, assembly, raw, settings | {"initial": dict(initial or {})}, error)
 
 
-def _channel(body: Body, kind: str) -> str:
+def channel_of(body: Body, kind: str) -> str:
+    """The channel that holds "angle", "speed" or "acceleration" of a coordinate."""
     if body.lateral:
-        return body.name if kind == "angle" else f"{body.name}_rate"
+        return body.name + {"angle": "", "speed": "_rate", "acceleration": "_acceleration"}[kind]
     return f"{body.name}.{kind}"
 
 

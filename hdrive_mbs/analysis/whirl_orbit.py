@@ -72,5 +72,8 @@ class WhirlOrbit:
 
 
 def lag(amplitude: ComplexArray) -> FloatArray:
-    """Angle [rad], from 0 up to 2 pi, by which Re[A exp(i w t)] follows cos(w t): -arg A."""
-    return np.asarray(np.mod(-np.angle(amplitude), 2.0 * np.pi))
+    """Angle [rad] by which Re[A exp(i w t)] follows cos(w t), -arg A, from -pi/4 up to 7 pi/4.
+
+    The cut lies below zero so that rounding about zero does not look like a whole turn.
+    """
+    return np.asarray(np.mod(0.25 * np.pi - np.angle(amplitude), 2.0 * np.pi) - 0.25 * np.pi)

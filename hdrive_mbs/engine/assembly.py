@@ -61,7 +61,7 @@ class Assembly:
     signs: dict[str, int]
     """Sense of each coordinate in the engine against the forward one."""
     copies: tuple[str, ...]
-    """Spins of rotors of which the engine keeps a copy (see _Builder.copied), after the states."""
+    """Coordinates of rotors of which the engine keeps a copy (see _Builder.copied), after the states; "" for a joint."""
     lowered: list[Lowered] = field(default_factory=list)
     kept: list[Any] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
@@ -72,8 +72,8 @@ class Assembly:
         q = [self.signs[name] * angles.get(name, 0.0) for name in self.bodies] + [0.0] * len(self.states)
         v = [self.signs[name] * speeds.get(name, 0.0) for name in self.bodies]
         v += [states.get(state.name, state.initial) for state in self.network.states]
-        q += [self.signs[name] * angles.get(name, 0.0) for name in self.copies]
-        v += [self.signs[name] * speeds.get(name, 0.0) for name in self.copies]
+        q += [self.signs.get(name, 1) * angles.get(name, 0.0) for name in self.copies]
+        v += [self.signs.get(name, 1) * speeds.get(name, 0.0) for name in self.copies]
         self.mbs.systemData.SetODE2Coordinates(q, exu.ConfigurationType.Initial)
         self.mbs.systemData.SetODE2Coordinates_t(v, exu.ConfigurationType.Initial)
 
@@ -162,30 +162,68 @@ class _Builder:
             self.markers[name] = self.mbs.AddMarker(item.MarkerNodeCoordinate(nodeNumber=node, coordinate=k))
 
     def copied(self, record: CoupledRecord) -> CoupledRecord:
-        """The record with a copy of a rotor's spin where it reads no other coordinate of that rotor.
+        """The record over copies of a rotor's coordinates, where with the rotor's node itself it would be too wide.
 
-        A symbolic coupling takes six coordinates, and a rotor's node has six already.  The copy c is a Node1D
-        with the one equation J (c'' - phi'') = 0, a row of a mass matrix: exact in every integrator.
+        A symbolic coupling takes six coordinates, and a rotor's node has six already.
         """
-        for rotor in self.network.rotors:
-            spin, touched = rotor.coordinates[-1], {*record.targets, *record.depends} & set(rotor.coordinates)
-            if record.outputs is not None and touched == {spin} and spin not in record.targets:
-                record = renamed(record, spin, self._copy(rotor))
-        return record
+        if record.outputs is None:
+            return record
+        touched = set(record.targets).union(record.depends)
+        here = [name for name in self.owner if name in touched]
+        if len(self._whole_nodes(tuple(touched))) <= SYMBOLIC_VECTOR_LIMIT or len(touched) > SYMBOLIC_VECTOR_LIMIT:
+            return record
+        return renamed(record, {name: self._twin(name) if name in record.targets else self._copy(name) for name in here})
 
-    def _copy(self, rotor: Rotor) -> str:
-        spin = rotor.coordinates[-1]
-        name = f"{spin}~"
-        if spin not in self.copies:
-            self.copies.append(spin)
-            self._add_node(name, 0.0)
-            mass, zero = np.zeros((7, 7)), np.zeros((7, 7))
-            mass[0, 0], mass[0, 6] = rotor.body.polar, -rotor.body.polar
-            nodes = [self.nodes[name], self.nodes[spin]]
-            self.mbs.AddObject(
-                item.ObjectGenericODE2(nodeNumbers=nodes, massMatrix=mass, stiffnessMatrix=zero, dampingMatrix=zero, forceVector=[0.0] * 7)
+    def _copy(self, name: str) -> str:
+        """A coordinate c that follows coordinate q of a rotor, to be read by laws.
+
+        A Node1D with the one equation J (c'' - q'') = 0, a row of a mass matrix: exact in every integrator.
+        """
+        copy = f"{name} copy~"
+        if copy not in self.nodes:
+            self.copies.append(name)
+            self._add_node(copy, 0.0)
+            place, inertia = self._in_rotor(name)
+            mass = np.zeros((7, 7))
+            mass[0, 0], mass[0, 1 + place] = inertia, -inertia
+            self._add_mass([copy, name], mass)
+        return copy
+
+    def _twin(self, name: str) -> str:
+        """A coordinate c that follows coordinate q of a rotor and hands on to it every force F that acts on c.
+
+        J (c'' - q'') = 0 as row of a coordinate p, and J p'' = F on c, (M q'')_q - J p'' = Q on q: p'' is the force
+        of a rigid joint over J, found with the accelerations, so this too is exact in every integrator.
+        """
+        twin = f"{name} twin~"
+        if twin not in self.nodes:
+            self.copies += [name, ""]
+            self._add_node(twin, 0.0)
+            self._add_node(f"{name} joint~", 0.0)
+            place, inertia = self._in_rotor(name)
+            mass = np.zeros((8, 8))
+            mass[1, 0], mass[1, 2 + place] = inertia, -inertia
+            mass[0, 1], mass[2 + place, 1] = inertia, -inertia
+            self._add_mass([twin, f"{name} joint~", name], mass)
+        return twin
+
+    def _in_rotor(self, name: str) -> tuple[int, float]:
+        """Which coordinate of its rotor it is, and the inertia there."""
+        rotor = self.owner[name]
+        place, body = rotor.coordinates.index(name), rotor.body
+        return place, (body.mass, body.mass, body.mass, body.transverse, body.transverse, body.polar)[place]
+
+    def _add_mass(self, names: Sequence[str], mass: Any) -> None:
+        zero = np.zeros_like(mass)
+        self.mbs.AddObject(
+            item.ObjectGenericODE2(
+                nodeNumbers=[self.nodes[name] for name in names],
+                massMatrix=mass,
+                stiffnessMatrix=zero,
+                dampingMatrix=zero,
+                forceVector=[0.0] * len(mass),
             )
-        return name
+        )
 
     # -- constant matrices -------------------------------------------------------------------------
     def add_matrix(self, element: MatrixElement) -> None:

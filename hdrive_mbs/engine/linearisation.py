@@ -44,9 +44,10 @@ def linearise(assembly: Assembly, *, angles: Mapping[str, float], speeds: Mappin
     mass, stiffness, damping = (np.asarray(item, float) for item in assembly.mbs.ComputeLinearizedSystem(settings)[:3])
     n, m = len(assembly.bodies), len(assembly.states)
     signs = np.array([assembly.signs[name] for name in assembly.bodies] + [1] * m, float)
-    for k, name in enumerate(assembly.copies, start=n + m):  # what depends on the copy of a spin depends on the spin
-        for matrix in (stiffness, damping):
+    for k, name in enumerate(assembly.copies, start=n + m):  # what depends or acts on a copy depends or acts on the coordinate
+        for matrix in (stiffness, damping) if name else ():
             matrix[:, assembly.bodies.index(name)] += matrix[:, k]
+            matrix[assembly.bodies.index(name), :] += matrix[k, :]
     mass, stiffness, damping = (np.outer(signs, signs) * item[: n + m, : n + m] for item in (mass, stiffness, damping))
     body, state = slice(0, n), slice(n, n + m)
     inverse = np.linalg.inv(mass[body, body])

@@ -61,22 +61,23 @@ class CoupledRecord:
     reason: str = ""
 
 
-def renamed(coupled: CoupledRecord, old: str, new: str) -> CoupledRecord:
-    """The record with another name for a coordinate that it only reads."""
+def renamed(coupled: CoupledRecord, names: Mapping[str, str]) -> CoupledRecord:
+    """The record with other names for coordinates that it reads or acts on."""
     assert coupled.outputs is not None
-    given = {f"{kind}:{old}": variable(f"{kind}:{new}") for kind in ("angle", "speed")}
+    given = {f"{kind}:{old}": variable(f"{kind}:{new}") for kind in ("angle", "speed") for old, new in names.items()}
+    former = {new: old for old, new in names.items()}
 
     def substituted(expression: Expression) -> Expression:
         return record(evaluate(expression, {name: given.get(name, variable(name)) for name in variables(expression)}))
 
     def plain(moment: Moment) -> dict[str, Value]:
-        angles, speeds = dict(moment.angles), dict(moment.speeds)
-        angles[old], speeds[old] = angles.pop(new), speeds.pop(new)
-        return coupled.plain(Moment(time=moment.time, angles=angles, speeds=speeds, states=moment.states))
+        angles, speeds = ({former.get(name, name): value for name, value in item.items()} for item in (moment.angles, moment.speeds))
+        result = coupled.plain(Moment(time=moment.time, angles=angles, speeds=speeds, states=moment.states))
+        return {names.get(name, name): value for name, value in result.items()}
 
-    outputs = {name: substituted(item) for name, item in coupled.outputs.items()}
-    depends = tuple(new if name == old else name for name in coupled.depends)
-    return CoupledRecord(coupled.name, coupled.targets, outputs, depends, plain, coupled.reason)
+    outputs = {names.get(name, name): substituted(item) for name, item in coupled.outputs.items()}
+    targets, depends = (tuple(names.get(name, name) for name in item) for item in (coupled.targets, coupled.depends))
+    return CoupledRecord(coupled.name, targets, outputs, depends, plain, coupled.reason)
 
 
 class _Looked(Mapping[str, float]):

@@ -29,12 +29,13 @@ class Coupling:
         """What the element promises."""
         return (Claim(self.name, self.power),) if self.dissipative else ()
 
-    def _along(self, values: Mapping[str, Value]) -> dict[str, Value]:
+    def along(self, values: Mapping[str, Value]) -> dict[str, Value]:
+        """Stretches of coordinates, or their rates of speeds."""
         return {key: sum(factor * values[name] for name, factor in factors.items()) for key, factors in self.stretches.items()}
 
     def values(self, moment: Moment) -> Mapping[str, Value]:
         """Force of each direction [N, N m]."""
-        return self.forces(moment, self._along(moment.angles), self._along(moment.speeds))
+        return self.forces(moment, self.along(moment.angles), self.along(moment.speeds))
 
     def contribution(self, moment: Moment) -> dict[str, Value]:
         result: dict[str, Value] = {}
@@ -45,7 +46,7 @@ class Coupling:
 
     def power(self, moment: Moment) -> Value:
         """Power that the element takes from the coordinates [W]."""
-        rates = self._along(moment.speeds)
+        rates = self.along(moment.speeds)
         return sum(force * rates[key] for key, force in self.values(moment).items())
 
 

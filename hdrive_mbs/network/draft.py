@@ -27,6 +27,7 @@ from hdrive_mbs.network.rigid_mass import RigidMass
 from hdrive_mbs.network.station import (
     LATERAL,
     Station,
+    constant_force,
     coordinate_names,
     station_bodies,
     station_channels,
@@ -379,12 +380,12 @@ class Draft:
         for body in self._bodies:
             for ending, value in falls.items():
                 if body.unit == "m" and body.name.endswith(ending) and body.inertia > 0.0:
-                    self._elements.append(AppliedTorque(f"{body.name}.weight", body.name, _constant(value * body.inertia)))
+                    self._elements.append(constant_force(f"{body.name}.weight", body.name, value * body.inertia))
         for element in [item for item in self._elements if isinstance(item, MatrixElement) and item.mass.any()]:
             field_ = np.array([sum(value for ending, value in falls.items() if name.endswith(ending)) for name in element.coordinates])
             for name, force in zip(element.coordinates, element.mass @ field_, strict=True):
                 if force != 0.0:
-                    self._elements.append(AppliedTorque(f"{element.name}.weight", name, _constant(float(force))))
+                    self._elements.append(constant_force(f"{element.name}.{name}.weight", name, float(force)))
 
     def _station_channels(self) -> list[Channel]:
         channels: list[Channel] = []
@@ -396,10 +397,6 @@ class Draft:
             centre = node.mass.centre[:2] if node.is_rotor and place == node_name and any(node.mass.centre[:2]) else None
             channels += station_channels(place, {key: station.stretch(key) for key in LATERAL}, centre, node_name, node.sense)
         return channels
-
-
-def _constant(value: float) -> Callable[[Moment], Value]:
-    return lambda moment: value + 0.0 * moment.time
 
 
 def _at_rest(time: Value) -> Value:

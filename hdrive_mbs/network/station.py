@@ -153,7 +153,7 @@ def weights(node: str, mass: RigidMass, sense: int, gravity: tuple[float, float,
         moments |= {3: -mass.centre[2] * force[1], 4: mass.centre[2] * force[0]}
     for k, value in moments.items():
         if value != 0.0:
-            yield AppliedTorque(f"{names[k]}.weight", names[k], _constant(value))
+            yield constant_force(f"{names[k]}.weight", names[k], value)
     ex, ey = mass.centre[:2]
     if is_rotor and (ex or ey) and (force[0] or force[1]):
 
@@ -162,11 +162,17 @@ def weights(node: str, mass: RigidMass, sense: int, gravity: tuple[float, float,
             x, y = ex * np.cos(angle) - ey * np.sin(angle), ey * np.cos(angle) + ex * np.sin(angle)
             return sense * (x * force[1] - y * force[0])
 
-        yield AppliedTorque(f"{node}.weight", node, torque)
+        def height(moment: Moment) -> Value:
+            angle = sense * moment.angle(node)
+            x, y = ex * np.cos(angle) - ey * np.sin(angle), ey * np.cos(angle) + ex * np.sin(angle)
+            return -x * force[0] - y * force[1]
+
+        yield AppliedTorque(f"{node}.weight", node, torque, stored=height)
 
 
-def _constant(value: float) -> Callable[[Moment], Value]:
-    return lambda moment: value + 0.0 * moment.time
+def constant_force(name: str, coordinate: str, value: float) -> AppliedTorque:
+    """A constant force along a coordinate [N, N m] and the energy of position that belongs to it."""
+    return AppliedTorque(name, coordinate, lambda m: value + 0.0 * m.time, stored=lambda m: -value * m.angle(coordinate))
 
 
 def station_channels(

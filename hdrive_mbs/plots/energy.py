@@ -1,4 +1,4 @@
-"""Picture of an energy and momentum balance."""
+"""Picture of a balance of energy and angular momentum."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ def plot_energy(result: EnergyBalance, ax: Axes | None = None) -> Axes:
         axes[2].set_xlabel("time [s]")
         figure.align_ylabels(axes)
         if result.scene is not None:
-            figure.suptitle(f"{result.scene.name}: balance of energy and angular momentum", x=0.01, ha="left")
+            what = "energy and angular momentum" if len(result.momentum) else "energy"
+            figure.suptitle(f"{result.scene.name}: balance of {what}", x=0.01, ha="left")
     first: Axes = axes[0]
     return first
 
@@ -71,10 +72,9 @@ def _kept(ax: Axes, result: EnergyBalance) -> None:
 
 
 def _residuals(ax: Axes, result: EnergyBalance) -> None:
-    columns = [
-        ("energy", np.abs(result.energy_residual) / result.energy_scale),
-        ("angular momentum", np.abs(result.momentum_residual) / result.momentum_scale),
-    ]
+    columns = [("energy", np.abs(result.energy_residual) / result.energy_scale)]
+    if len(result.momentum):
+        columns.append(("angular momentum", np.abs(result.momentum_residual) / result.momentum_scale))
     for k, (name, values) in enumerate(columns):
         x, y = thinned(result.times, np.maximum(values, 1e-18))
         ax.plot(x, y, label=f"{name}, at most {float(values.max()):.2g}", **style(k))

@@ -1,0 +1,108 @@
+"""Whirl in step with the spin of unbalanced rotors, by the linearised line: critical speeds and the steady orbit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import LinAlgError, eig
+
+from hdrive_mbs.analysis.line_matrices import LineMatrices
+from hdrive_mbs.analysis.rotor_point import RotorPoint
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+EXCITED = 1e-6
+"""Share of the most strongly excited mode below which a mode counts as not excited (backward whirl of a symmetric line)."""
+
+
+@dataclass(frozen=True)
+class CriticalSpeed:
+    """Speed of the reference shaft at which unbalance meets a natural frequency, and that frequency, both rad/s."""
+
+    speed: float
+    frequency: float
+
+
+class Unbalance(NamedTuple):
+    """Spin [rad/s] and angle [rad] of a rotor in the true sense, and F in its force Re[F exp(i phi)], shape (n,)."""
+
+    spin: float
+    angle: float
+    force: ComplexArray
+
+
+def unbalances(lines: LineMatrices, point: RotorPoint) -> Iterator[Unbalance]:
+    """The rotors that turn and are not balanced.
+
+    With the static unbalance s = m e and the product of inertia J (x part + i y part, both in the turning frame)
+
+        F_x = w^2 s,  F_y = -i w^2 s,  M_psi = -i w^2 J,  M_theta = -w^2 J
+    """
+    index = {name: k for k, name in enumerate(lines.names)}
+    for rotor in lines.network.rotors:
+        s, product = rotor.body.static_unbalance, rotor.body.product_unbalance
+        spin, angle = (rotor.sense * values[rotor.coordinates[5]] for values in (point.speeds, point.angles))
+        if (s == 0.0 and product == 0.0) or spin == 0.0:
+            continue
+        force = np.zeros(len(lines.names), complex)
+        x, y, _, psi, theta, _ = (index[name] for name in rotor.coordinates)
+        force[[x, y, psi, theta]] = spin**2 * np.array([s, -1j * s, -1j * product, -product])
+        yield Unbalance(spin, angle, force)
+
+
+def critical_speeds(lines: LineMatrices, slower: RotorPoint, faster: RotorPoint) -> tuple[CriticalSpeed, ...]:
+    """Undamped critical speeds that the unbalance of the scene excites, ascending.
+
+    slower, faster : steady rotation at two speeds of the reference shaft; what differs in damping is gyroscopic
+
+    With the gyroscopic matrix G per unit speed of the reference shaft and a rotor that turns r times as fast,
+    K q = W^2 (r^2 M - i r G) q: all critical speeds from one problem.  A mode that the unbalance does no work on
+    is left out.  Leaves out damping, and takes the stiffness of bearings at ``faster`` for all speeds.
+    """
+    before, system = (lines.at(point.angles, point.speeds, point.states) for point in (slower, faster))
+    lateral = [k for k, body in enumerate(lines.network.bodies) if body.lateral]
+    at = np.ix_(lateral, lateral)
+    difference = (system.damping - before.damping)[at] / (faster.speed - slower.speed)
+    gyroscopic = 0.5 * (difference - difference.T)
+    stiffness = 0.5 * (system.stiffness + system.stiffness.T)[at]
+    forces: dict[float, list[ComplexArray]] = {}
+    for item in unbalances(lines, faster):
+        forces.setdefault(round(item.spin / faster.speed, 12), []).append(item.force[lateral])
+    found: list[CriticalSpeed] = []
+    for ratio, group in forces.items():
+        try:
+            squares, shapes = eig(stiffness, ratio**2 * system.mass[at] - 1j * ratio * gyroscopic)
+        except LinAlgError:
+            continue
+        real = np.isfinite(squares) & (squares.real > 0.0) & (np.abs(squares.imag) <= 1e-6 * np.abs(squares.real))
+        speeds, shapes = np.sqrt(squares[real].real), shapes[:, real]
+        # work of the unbalance on the shape over its elastic energy: how fast it builds up
+        energy = np.abs(np.einsum("ik,ij,jk->k", shapes.conj(), stiffness, shapes))
+        work = sum(np.abs(shapes.conj().T @ force) ** 2 for force in group) / np.where(energy > 0.0, energy, np.inf)
+        excited = work > EXCITED * float(np.max(work, initial=0.0))
+        found += [CriticalSpeed(float(w), float(abs(ratio) * w)) for w in speeds[excited]]
+    found.sort(key=lambda item: item.speed)
+    return tuple(item for k, item in enumerate(found) if k == 0 or item.speed > found[k - 1].speed * (1.0 + 1e-9))
+
+
+def steady_whirl(lines: LineMatrices, point: RotorPoint) -> tuple[Mapping[str, float], Mapping[str, float]]:
+    """Displacements and rates of the lateral coordinates on their steady orbits at the moment of the point.
+
+    (K - w^2 M + i w D) Q = F  for each rotor with its spin w;  what is returned comes on top of the static deflection.
+    """
+    system = lines.at(point.angles, point.speeds, point.states)
+    lateral = [k for k, body in enumerate(lines.network.bodies) if body.lateral]
+    at = np.ix_(lateral, lateral)
+    places, rates = np.zeros(len(lateral)), np.zeros(len(lateral))
+    for spin, angle, force in unbalances(lines, point):
+        dynamic = system.stiffness[at] - spin**2 * system.mass[at] + 1j * spin * system.damping[at]
+        amplitude = np.linalg.lstsq(dynamic, force[lateral] * np.exp(1j * angle), rcond=None)[0]
+        places += amplitude.real
+        rates += (1j * spin * amplitude).real
+    names = [lines.names[k] for k in lateral]
+    return dict(zip(names, places.tolist(), strict=True)), dict(zip(names, rates.tolist(), strict=True))
