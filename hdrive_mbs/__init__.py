@@ -19,6 +19,7 @@ __version__ = "0.1.0"
 _WHERE: dict[str, tuple[str, ...]] = {
     "scene": ("Scene",),
     "scene_file": ("load_scene", "save_scene"),
+    "rotor_line_builder": ("rotor_line", "ShaftMaterial"),
     "signals": ("TimeHistory",),
     "quantities": ("parameter", "table", "option", "rpm", "mm", "degrees", "arcmin"),
     "errors": (
@@ -35,6 +36,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "components.rotor": ("Rotor",),
     "components.shaft_section": ("ShaftSection",),
     "components.rigid_section": ("RigidSection",),
+    "components.flexible_coupling": ("FlexibleCoupling",),
     "components.bearing": ("Bearing",),
     "components.housing": ("Housing",),
     "components.drive_torque": ("DriveTorque",),
@@ -111,10 +113,20 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "analysis.operating_point": ("OperatingPoint", "operating_point"),
     "analysis.modes": ("Modes", "modes"),
     "analysis.campbell": ("Campbell", "torsional_campbell"),
+    "analysis.whirl_modes": ("WhirlModes", "whirl_modes"),
+    "analysis.whirl_campbell": ("WhirlCampbell", "campbell"),
     "analysis.spectrum": ("Spectrum", "spectrum"),
     "analysis.order_spectrum": ("OrderSpectrum", "order_spectrum"),
+    "analysis.run_up": ("RunUp", "run_up", "coast_down"),
+    "analysis.orbit": ("Orbit", "orbit"),
+    "analysis.waterfall": ("Waterfall", "waterfall"),
+    "analysis.spectrogram": ("Spectrogram", "spectrogram"),
+    "analysis.order_tracking": ("OrderTracking", "order_tracking"),
     "analysis.energy": ("EnergyBalance", "energy_balance"),
     "analysis.reduction": ("Reduction", "reduce", "with_rigid_shafts"),
+    "analysis.critical_map": ("CriticalSpeedMap", "critical_speed_map"),
+    "analysis.deflection_line": ("StaticDeflection", "static_deflection"),
+    "analysis.unbalance_response": ("UnbalanceResponse", "unbalance_response"),
     "plots": ("plot", "save_figure"),
 }  # fmt: skip
 _MODULE_OF = {name: module for module, exported in _WHERE.items() for name in exported}

@@ -40,6 +40,10 @@ class FileFormatError(HdriveError, ValueError):
     """A file is truncated, foreign, or does not say what the reader needs."""
 
 
+class RecordError(HdriveError, ValueError):
+    """A measured record has gaps, wrong units or other faults that would change results."""
+
+
 class SimulationError(HdriveError, RuntimeError):
     """A run diverged, stopped early or could not be started."""
 

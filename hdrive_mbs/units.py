@@ -67,6 +67,22 @@ def factor(given: str, unit: str, where: str) -> float:
     return value
 
 
+def base_powers(given: str, where: str) -> dict[str, float]:
+    """Powers of the base units of a unit, radians counted as one: ``"rpm"`` -> {"radian": 1, "second": -1}.
+
+    Raises UnitError when the unit cannot be read.
+    """
+    registry = _registry()
+    if len(given) > 100 or _UNIT.fullmatch(given) is None:
+        raise UnitError(f"{where}: unit {given[:40]!r} cannot be read.")
+    try:
+        base = registry.get_base_units(registry.parse_units(given))[1]
+    except Exception as error:  # pint raises many kinds for text it cannot parse
+        reason = f" ({error})" if str(error) else ""
+        raise UnitError(f"{where}: unit {given!r} is not known{reason}.") from None
+    return {name: float(power) for name, power in base._units.items() if power}
+
+
 def _cycles(registry: Any, unit: str) -> bool:
     return any(name.endswith("hertz") for name in registry.parse_units(unit)._units)
 

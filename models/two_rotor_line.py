@@ -64,15 +64,15 @@ def build(
     housing = hm.Housing.isotropic(mass=2.5, stiffness=foundation_stiffness, damping=numbers["foundation_damping"])
 
     def support(*, locating: bool) -> hm.Bearing:
-        linear = hm.LinearBearing.isotropic(
-            radial=numbers["radial"],
-            damping=numbers["damping"],
-            axial=1e8 if locating else 0.0,
-            axial_damping=100.0 if locating else 0.0,
-            tilt=5e3,
-            tilt_damping=numbers["tilt_damping"],
-        )
-        law = linear if cubic == 0.0 else hm.PowerBearing.cubic(linear, cubic)
+        linear = {
+            "radial": numbers["radial"],
+            "damping": numbers["damping"],
+            "axial": 1e8 if locating else 0.0,
+            "axial_damping": 100.0 if locating else 0.0,
+            "tilt": 5e3,
+            "tilt_damping": numbers["tilt_damping"],
+        }
+        law = hm.LinearBearing.isotropic(**linear) if cubic == 0.0 else hm.PowerBearing.isotropic(power_radial=cubic, **linear)
         return hm.Bearing(law=law, mass=0.35, polar_inertia=6e-5, transverse_inertia=5e-5, housing=housing)
 
     names = list(POSITIONS)

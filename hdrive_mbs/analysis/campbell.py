@@ -12,6 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from hdrive_mbs.analysis.modes import Modes, matching_damping, modes_at
 from hdrive_mbs.analysis.operating_point import at_speed, operating_point, with_load
 from hdrive_mbs.analysis.result import Result
+from hdrive_mbs.analysis.spinning_line import without_unbalance
 from hdrive_mbs.engine.assembly import assemble
 from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.progress import progress_bar
@@ -77,6 +78,7 @@ def torsional_campbell(
         by default 1 and 2 of the motor
     torque : load torque [N m] in place of the scene's own load at t = 0
 
+    Of a rotor line these are the torsional branches alone; ``campbell`` gives whirl, torsion and axial motion together.
     A train without speed-dependent stiffness has level branches; they bend with a load that grows
     with speed, because the flexspline stiffens with torque.  Raises ParameterError for speeds that
     do not increase.
@@ -87,15 +89,16 @@ def torsional_campbell(
         grid = np.zeros(0)
     if grid.ndim != 1 or len(grid) < 2 or not np.all(np.diff(grid) > 0.0) or not np.all(np.isfinite(grid)):
         raise ParameterError("speeds: give at least two motor speeds [rad/s] in increasing order.")
-    loaded = scene if torque is None else with_load(scene, torque)
+    balanced = without_unbalance(scene)
+    loaded = balanced if torque is None else with_load(balanced, torque)
     network = loaded.network()
     lines = _lines(loaded, orders)
-    assembly = assemble(network)
+    assembly = assemble(network.turning())
     points: list[Modes] = []
     with progress_bar(f"{scene.name}: Campbell", len(grid), progress) as report:
         for k, speed in enumerate(grid):
             turning = at_speed(loaded, float(speed))  # another scene only where the motor's motion is prescribed
-            built = assembly if turning is loaded else assemble(turning.network())
+            built = assembly if turning is loaded else assemble(turning.network().turning())
             points.append(modes_at(turning, built, operating_point(turning, motor_speed=float(speed))))
             if report is not None:
                 report(k + 1)

@@ -50,6 +50,11 @@ class ChannelSlopes:
         """Whether the slopes are the same at every state."""
         return not self._varying and not self._plain
 
+    def linear(self) -> FloatArray:
+        """Slopes per displacement of channels that are linear, (channels, coordinates)."""
+        assert self.is_constant
+        return np.asarray(self._constant[0])
+
     def at(self, point: RotorPoint) -> FloatArray:
         """Slopes at a steady rotation, shape (2, channels, coordinates): per displacement, then per velocity."""
         slopes = self._constant.copy()

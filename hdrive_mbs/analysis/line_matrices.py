@@ -182,13 +182,14 @@ class LineMatrices:
         return found
 
     def varying(self) -> dict[str, set[str]]:
-        """Lateral coordinates whose slopes depend on the state -> the variables they depend on (``speed:rotor``); none for a linear line."""
+        """Lateral coordinates whose slopes depend on the state -> on which variables (``speed:rotor``); none for a linear line."""
         lateral = {body.name for body in self.network.bodies if body.lateral}
         found: dict[str, set[str]] = {}
         for slope in self._slopes:
             if self.names[slope.row] in lateral and self.names[slope.column] in lateral:
                 found.setdefault(self.names[slope.row], set()).update(variables(slope.value))
-        moment = self.network.moment(np.float64(0.0), *[dict.fromkeys(self.names, np.float64(0.0))] * 2, {s.name: s.initial for s in self.network.states})
+        zero, states = dict.fromkeys(self.names, np.float64(0.0)), {state.name: state.initial for state in self.network.states}
+        moment = self.network.moment(np.float64(0.0), zero, zero, states)
         for element in self._plain:
             for name in lateral & set(element.contribution(moment)):
                 found.setdefault(name, set())

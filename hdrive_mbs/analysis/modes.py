@@ -12,6 +12,7 @@ from scipy.optimize import linear_sum_assignment
 
 from hdrive_mbs.analysis.operating_point import OperatingPoint, at_speed, operating_point, with_load
 from hdrive_mbs.analysis.result import Result
+from hdrive_mbs.analysis.spinning_line import without_unbalance
 from hdrive_mbs.engine.assembly import Assembly, assemble
 from hdrive_mbs.engine.linearisation import LinearSystem, linearise
 from hdrive_mbs.scene import Scene
@@ -83,12 +84,13 @@ def modes(scene: Scene, *, torque: float | None = None, motor_speed: float | Non
     torque : load torque [N m] in place of the scene's own load at t = 0
     motor_speed : rad/s; None for the speed at which motor and load balance
 
-    The motor's torque-speed slope counts as damping.  Raises AnalysisError when no steady
+    The motor's torque-speed slope counts as damping.  Of a rotor line these are the torsional modes alone, with balanced
+    rotors; ``whirl_modes`` gives whirl, torsion and axial motion together.  Raises AnalysisError when no steady
     operating point exists.
     """
-    point = operating_point(scene, motor_speed=motor_speed, torque=torque)
+    point = operating_point(without_unbalance(scene), motor_speed=motor_speed, torque=torque)
     loaded = at_speed(scene if torque is None else with_load(scene, torque), point.motor_speed)
-    return modes_at(loaded, assemble(loaded.network()), point)
+    return modes_at(loaded, assemble(without_unbalance(loaded).network().turning()), point)
 
 
 def modes_at(scene: Scene, assembly: Assembly, point: OperatingPoint) -> Modes:
@@ -98,7 +100,7 @@ def modes_at(scene: Scene, assembly: Assembly, point: OperatingPoint) -> Modes:
     angles = {name: outwards * angle for name, angle in point.angles.items()}
     system = linearise(assembly, angles=angles, speeds=point.speeds, states=point.states)
     undamped, shapes, rigid, basis = _undamped(system)
-    senses = np.array([body.sense for body in scene.network().bodies], float)
+    senses = np.array([body.sense for body in assembly.network.bodies], float)
     damped, ratio, damped_shapes, decay = _damped(system, rigid, basis)
     notes = [f"{name} is inside its lost motion or backlash: stiffness 0 there" for name in point.in_gap]
     notes += [f"{name} sits at a corner of its law: the stiffness towards larger twist is taken" for name in point.at_corner]

@@ -8,13 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrive_mbs.analysis.result import Result
+from hdrive_mbs.analysis.shaft_angle import TURN, ShaftAngle, shaft_history
 from hdrive_mbs.analysis.spectrum import chosen_history, chosen_span, folding_note, sample_count, values_at
 from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.analysis.windows import line_amplitudes, local_maxima, window_named
-from hdrive_mbs.errors import AnalysisError, ParameterError
+from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.signals import FloatArray, TimeHistory
-
-TURN = 2.0 * np.pi
 
 
 class OrderPeak(NamedTuple):
@@ -99,15 +98,12 @@ def order_spectrum(
     the angle does not run in one direction over the span, or by less than one revolution.
     """
     history, scene = chosen_history(source, channel)
-    shaft = _shaft(source, against)
+    shaft = shaft_history(source, against)
     shape = window_named(window)
     begin, finish = chosen_span(history, start, end)
     begin, finish = chosen_span(shaft, begin, finish)
-    inside = shaft.between(begin, finish)
-    times = np.unique(np.concatenate([[begin], inside.times, [finish]]))
-    angles, speeds = shaft.at(times), _speed(shaft, times)
-    direction = _direction(shaft.name, times, angles, speeds)
-    turns = abs(angles[-1] - angles[0]) / TURN
+    turning = ShaftAngle.over(shaft, begin, finish)
+    turns = turning.turns
     if turns < 1.0 - 1e-9:
         raise AnalysisError(
             f"{shaft.name} turns by only {turns:.3g} revolutions from {begin:g} s to {finish:g} s; an order spectrum needs at least 1. "
@@ -117,13 +113,13 @@ def order_spectrum(
         turns = float(np.floor(turns * (1.0 + 1e-9)))
     span = TURN * turns
     step = None if samples_per_revolution is None else TURN / samples_per_revolution
-    count = sample_count(history.name, angles, span, step, "rad")
-    wanted = angles[0] + direction * span / count * np.arange(count + 1)
-    at = _times_of(wanted, times, angles, speeds)
+    count = sample_count(history.name, turning.angles, span, step, "rad")
+    wanted = turning.angles[0] + turning.direction * span / count * np.arange(count + 1)
+    at = turning.times_of(wanted)
     values = values_at(source, history, at[:-1])
     amplitude, phase = line_amplitudes(values, shape)
     last = float(at[-1])
-    covered = np.abs(speeds[times <= last])
+    covered = np.abs(turning.speeds[turning.times <= last])
     return OrderSpectrum(
         scene=scene,
         status=folding_note(amplitude, f"order {0.5 * count / turns:.4g}", "give more samples_per_revolution"),
@@ -143,59 +139,3 @@ def order_spectrum(
         slowest=float(covered.min()),
         fastest=float(covered.max()),
     )
-
-
-def _shaft(source: Response | TimeHistory, against: str | TimeHistory) -> TimeHistory:
-    if isinstance(against, TimeHistory):
-        return against
-    if isinstance(source, TimeHistory):
-        raise ParameterError(f"against = {against!r} names a channel, but a single time history has none; give the angle as a TimeHistory.")
-    return source[against if against in source else f"{against}.angle"]
-
-
-def _speed(shaft: TimeHistory, times: FloatArray) -> FloatArray:
-    """Slope of the interpolated angle."""
-    from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
-
-    if shaft.slope is not None:
-        return np.asarray(CubicHermiteSpline(shaft.times, shaft.values, shaft.slope)(times, 1), float)
-    return np.asarray(PchipInterpolator(shaft.times, shaft.values)(times, 1), float)
-
-
-def _direction(name: str, times: FloatArray, angles: FloatArray, speeds: FloatArray) -> float:
-    """+1 or -1; raises AnalysisError where the shaft stands or turns back."""
-    direction = 1.0 if angles[-1] >= angles[0] else -1.0
-    backwards = direction * speeds <= 0.0
-    backwards[[0, -1]] = direction * speeds[[0, -1]] < 0.0  # the run may start or end at rest
-    backwards[1:] |= direction * np.diff(angles) <= 0.0
-    if backwards.any():
-        turning = np.nonzero(np.sign(speeds[1:]) * np.sign(speeds[:-1]) <= 0.0)[0]
-        where = turning if len(turning) else np.nonzero(backwards)[0]
-        first, last = times[where[0]], times[where[-1]]
-        when = f"at t = {first:.4g} s" if first == last else f"first at t = {first:.4g} s and last at t = {last:.4g} s"
-        raise AnalysisError(
-            f"{name} does not run in one direction: it stands still or turns back {when}. An angle that repeats cannot be the axis; "
-            "choose start and end where the shaft keeps turning."
-        )
-    return direction
-
-
-def _times_of(wanted: FloatArray, times: FloatArray, angles: FloatArray, speeds: FloatArray) -> FloatArray:
-    """Times at which the (Hermite) angle takes the wanted values: bisection within each own step."""
-    from scipy.interpolate import CubicHermiteSpline
-
-    curve = CubicHermiteSpline(times, angles, speeds)
-    direction = 1.0 if angles[-1] >= angles[0] else -1.0
-    place = np.clip(np.searchsorted(direction * angles, direction * wanted, side="right") - 1, 0, len(times) - 2)
-    low, high = times[place], times[place + 1]
-    guess = low + (high - low) * (wanted - angles[place]) / (angles[place + 1] - angles[place])
-    for _ in range(60):
-        error = direction * (curve(guess) - wanted)
-        low, high = np.where(error < 0.0, guess, low), np.where(error < 0.0, high, guess)
-        slope = direction * curve(guess, 1)
-        newton = guess - error / np.where(slope > 0.0, slope, 1.0)
-        new = np.where((slope > 0.0) & (newton >= low) & (newton <= high), newton, 0.5 * (low + high))
-        if np.max(np.abs(new - guess)) <= 1e-15 * max(abs(times[-1]), 1e-300):
-            break
-        guess = new
-    return np.asarray(np.clip(guess, times[0], times[-1]), float)

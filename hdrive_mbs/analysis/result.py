@@ -77,13 +77,7 @@ class Result:
 
     def to_csv(self, path: str | os.PathLike[str]) -> Path:
         """Write the columns as CSV (comma, point, one header line with units)."""
-        columns = self.columns()
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(columns)
-        for row in zip(*columns.values(), strict=True):
-            writer.writerow([f"{value:.12g}" if isinstance(value, (float, np.floating)) else value for value in row])
-        return write_text(path, text.getvalue())
+        return write_csv(path, self.columns())
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the whole result to one file (numpy archive with a JSON head and a checksum)."""
@@ -113,6 +107,16 @@ class Result:
         if not isinstance(result, cls):
             raise FileFormatError(f"{path} holds a {type(result).__name__}, not a {cls.__name__}.")
         return result
+
+
+def write_csv(path: str | os.PathLike[str], columns: Mapping[str, np.ndarray]) -> Path:
+    """Write equally long columns as CSV (comma, point, one header line)."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    for row in zip(*columns.values(), strict=True):
+        writer.writerow([f"{value:.12g}" if isinstance(value, (float, np.floating)) else value for value in row])
+    return write_text(path, text.getvalue())
 
 
 def load(path: str | os.PathLike[str]) -> Result:

@@ -23,8 +23,13 @@ STEPS = 2000
 NEAR = 1.1
 """A critical speed up to this multiple of the highest speed is met: its resonance has begun."""
 
-AT_CRITICAL = 3.0
+AT_CRITICAL = 2.0
 BESIDE = 24.0
+"""(w h)^2 over these is the relative error that is allowed for at and away from critical speeds."""
+
+LESSER = 4.0
+"""Multiple of the accuracy that a peak may be off where another critical speed gives the rotor a larger one."""
+
 FEWEST = 200
 """Steps that a run has at least."""
 
@@ -75,27 +80,51 @@ def choose_step(
 
     The rule answers an excitation of frequency w as the line would at  (2/h) tan(w h/2) = w (1 + (w h)^2/12): critical
     speeds come out (w h)^2/12 too low, and a peak there with them.  Its amplitude goes with m e w^2/(c w), whose
-    force is that of the lower speed: at least (w h)^2/6 too small.  Run-ups of two_rotor_line and of a Jeffcott rotor
-    show up to (w h)^2/3.5, as the spin gives way too, so
+    force is that of the lower speed: at least (w h)^2/6 too small.  As the spin gives way too, run-ups of a Jeffcott
+    rotor (from just above capture to very fast) are off by (w h)^2/2.3 to (w h)^2/2.6 with w the critical speed, and
+    two_rotor_line by (w h)^2/2.8, so
 
-        (w h)^2/3 <= accuracy     at the highest critical speed that is met.
+        (w h)^2/2 <= accuracy     at each critical speed that is met.
 
-    Away from critical speeds an amplitude is off by (w h)^2/6, and at the highest speed four times the accuracy is
-    allowed,  (w h)^2/24 <= accuracy,  which is at least 40 steps a revolution at 1e-3.
+    Where another critical speed gives every rotor a larger peak (reach x amplification, the latter 1/(2 damping ratio),
+    or 1.2 w/sqrt(a) in a fast run-up), up to four times as much is allowed.  Away from critical speeds an amplitude is
+    off by (w h)^2/6; there it may be four times the accuracy: (w h)^2/24 <= accuracy at the highest speed, at least
+    40 steps a revolution at 1e-3.
     """
     if not fastest:
         raise SceneError("Nothing in this scene turns.")
     top = max(fastest.values())
-    reference = max((speed / abs(ratios[name]) for name, speed in fastest.items() if ratios.get(name)), default=top)
+    reference = reference_speed(fastest, ratios)
     met = [item for item in criticals if item.speed <= NEAR * reference]
     limits = [(duration / FEWEST, f"a run has at least {FEWEST} steps")]
-    if met:
-        frequency = max(item.frequency for item in met)
-        limits.append((math.sqrt(AT_CRITICAL * accuracy) / frequency, f"(w h)^2/3 <= {accuracy:g} at the critical speed w = {frequency:.4g} rad/s"))
-    elif top > 0.0:
-        limits.append((math.sqrt(AT_CRITICAL * accuracy) / top, f"(w h)^2/3 <= {accuracy:g} at the highest speed w = {top:.4g} rad/s"))
+    for item, share in zip(met, _allowed(met, reference / duration), strict=True):
+        step = math.sqrt(AT_CRITICAL * share * accuracy) / item.frequency
+        limits.append((step, f"(w h)^2/2 <= {share * accuracy:.3g} at the critical speed w = {item.frequency:.4g} rad/s"))
     if top > 0.0:
-        limits.append((math.sqrt(BESIDE * accuracy) / top, f"(w h)^2/24 <= {accuracy:g} at the highest speed w = {top:.4g} rad/s"))
+        name = f"at the highest speed w = {top:.4g} rad/s"
+        limits.append((math.sqrt(BESIDE * accuracy) / top, f"(w h)^2/24 <= {accuracy:.3g} {name}"))
+        if not met:
+            limits.append((math.sqrt(AT_CRITICAL * accuracy) / top, f"(w h)^2/2 <= {accuracy:.3g} {name}"))
     step, reason = min(limits)
     count = math.ceil(duration / step)
     return ChosenStep(duration / count, min(max(0.01 * accuracy, 1e-10), 1e-5), reason)
+
+
+def reference_speed(fastest: Mapping[str, float], ratios: Mapping[str, float]) -> float:
+    """Highest speed of the reference shaft [rad/s]."""
+    return max((speed / abs(ratios[name]) for name, speed in fastest.items() if ratios.get(name)), default=0.0)
+
+
+def _allowed(met: Sequence[CriticalSpeed], acceleration: float) -> list[float]:
+    """1 to 4 for each critical speed: how much smaller its peaks are than the largest of each rotor."""
+    if not met or not met[0].reach:
+        return [1.0] * len(met)
+    rows = []
+    for item in met:
+        swept = acceleration * item.frequency / item.speed
+        amplification = min(0.5 / max(item.damping_ratio, 1e-9), 1.2 * item.frequency / math.sqrt(swept) if swept > 0.0 else math.inf)
+        rows.append(np.array(item.reach) * amplification)
+    sizes = np.array(rows)
+    largest = np.max(sizes, axis=0)
+    share = np.max(sizes / np.where(largest > 0.0, largest, 1.0), axis=1)
+    return np.clip(1.0 / np.maximum(share, 1e-12), 1.0, LESSER).tolist()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,7 @@ from scipy.sparse.csgraph import connected_components, reverse_cuthill_mckee
 
 from hdrive_mbs.analysis.line_matrices import LineMatrices
 from hdrive_mbs.analysis.rotor_point import RotorPoint, rotor_point
+from hdrive_mbs.components.drive_torque import DriveTorque
 from hdrive_mbs.components.motor import Motor
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.motors.ideal_speed import IdealSpeedMotor
@@ -42,7 +44,9 @@ def free_to_turn(scene: Scene) -> Scene:
     their unbalance as a property instead of a force over time.
     """
     prescribed = [
-        name for name, part in scene.parts.items() if isinstance(part, Motor) and isinstance(part.characteristic, IdealSpeedMotor)
+        name
+        for name, part in scene.parts.items()
+        if isinstance(part, (Motor, DriveTorque)) and isinstance(part.characteristic, IdealSpeedMotor)
     ]
     return scene.replacing({f"{name}.characteristic": _no_torque for name in prescribed}) if prescribed else scene
 
@@ -146,9 +150,9 @@ class SpeedLine:
         return np.asarray((1.0 - share) * values[k] + share * values[k + 1])
 
     def full(self, values: FloatArray) -> FloatArray:
-        """Entries as matrices, (..., n, n)."""
-        matrix = np.zeros((*values.shape[:-1], self.size, self.size), values.dtype)
-        matrix[..., self.rows, self.columns] = values
+        """Entries as a matrix, (n, n)."""
+        matrix = np.zeros((self.size, self.size))
+        matrix[self.rows, self.columns] = values
         return matrix
 
     def matrices(self, speed: float) -> tuple[FloatArray, FloatArray]:
@@ -168,23 +172,25 @@ class SpeedLine:
         result = np.zeros((len(speeds), self.size), complex)
         mass = self.mass[self.rows, self.columns]
         acting = np.flatnonzero(np.any(forces != 0.0, axis=1))
-        solve = self._dense if self.size <= DENSE_LIMIT else self._banded()
+        solve = self._dense if self.size <= DENSE_LIMIT else self._banded
         step = max(1, CHUNK // (self.size**2 if self.size <= DENSE_LIMIT else len(self.rows)))
         for part in (acting[k : k + step] for k in range(0, len(acting), step)):
             w = frequencies[part, None]
             entries = self.between(self.stiffness, speeds[part]) + 1j * w * self.between(self.damping, speeds[part]) - w**2 * mass
-            result[part] = solve(entries, forces[part])
+            result[part] = solve(np.asarray(entries, complex), forces[part])
         lost = acting[self._is_lost(result[acting], forces[acting], frequencies[acting])]
         result[lost] = np.nan
         return result
 
     def _dense(self, entries: ComplexArray, forces: ComplexArray) -> ComplexArray:
-        matrices = self.full(entries)
+        matrices = np.zeros((len(entries), self.size, self.size), complex)
+        matrices[:, self.rows, self.columns] = entries
         try:
             return np.asarray(np.linalg.solve(matrices, forces[..., None])[..., 0])
         except np.linalg.LinAlgError:
             return np.array([_solved(matrix, force) for matrix, force in zip(matrices, forces, strict=True)])
 
+    @cached_property
     def _banded(self) -> Callable[[ComplexArray, ComplexArray], ComplexArray]:
         """The solver of a long line, whose coordinates can be ordered so that only few diagonals are not zero."""
         pattern = csr_array((np.ones(len(self.rows)), (self.rows, self.columns)), shape=(self.size, self.size))
@@ -210,12 +216,18 @@ class SpeedLine:
         """Where |F|/|Q|, both measured with the mass, is below what rounding makes of the largest eigenvalue."""
         if not len(result):
             return np.zeros(0, bool)
-        root = np.linalg.cholesky(self.mass)
-        stiffest = np.linalg.solve(root, np.linalg.solve(root, self.matrices(float(self.knots[-1]))[1]).T)
-        largest = np.maximum(np.linalg.norm(stiffest, 2), frequencies**2)
-        force = np.linalg.norm(np.linalg.solve(root, forces.T), axis=0)
+        root, inverse, stiffest = self._by_mass
+        largest = np.maximum(stiffest, frequencies**2)
+        force = np.linalg.norm(inverse @ forces.T, axis=0)
         motion = np.linalg.norm(root.T @ result.T, axis=0)
-        return ~(motion * LOST * np.finfo(float).eps * largest < force)
+        return np.asarray(~(motion * LOST * np.finfo(float).eps * largest < force))
+
+    @cached_property
+    def _by_mass(self) -> tuple[FloatArray, FloatArray, float]:
+        """R with M = R R^T, its inverse, and the largest eigenvalue of the stiffness with the mass made one (by its norm)."""
+        root = np.linalg.cholesky(self.mass)
+        inverse = np.linalg.inv(root)
+        return root, inverse, float(np.linalg.norm(inverse @ self.matrices(float(self.knots[-1]))[1] @ inverse.T, 2))
 
     def poles(self, ratio: float) -> ComplexArray:
         """Speeds W, complex, at which K(W) + i r W D(W) - r^2 W^2 M is singular; none unless bearings are linear.

@@ -73,11 +73,11 @@ class Whirl:
 
 
 def speed_peaks(
-    whirl: Whirl, angle: FloatArray, speed: FloatArray, reference: FloatArray, criticals: FloatArray, speed_at: Callable[[float], float]
+    whirl: Whirl, angle: FloatArray, reference: FloatArray, criticals: FloatArray, speed_at: Callable[[float], float]
 ) -> tuple[SpeedPeak, ...]:
     """Peaks of the envelope in the order of time; the ends of the run are none.
 
-    angle, speed : of the rotor at the samples [rad, rad/s];  speed_at : its speed at any time
+    angle : of the rotor at the samples [rad];  speed_at : its speed at any time [rad/s]
     reference, criticals : speed of the reference shaft at the samples, critical speeds of it [rad/s]
 
     The envelope is the largest distance of each half revolution, then of each span of 1.25 sqrt(2 pi/a), a the mean

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -22,10 +22,16 @@ EXCITED = 1e-6
 
 @dataclass(frozen=True)
 class CriticalSpeed:
-    """Speed of the reference shaft at which unbalance meets a natural frequency, and that frequency, both rad/s."""
+    """Speed of the reference shaft at which unbalance meets a natural frequency.
+
+    speed : of the reference shaft [rad/s];  frequency : of the whirl [rad/s];  damping_ratio : of the mode
+    reach : amplitude 0-peak [m] at each place asked for, per unit of the amplification of a resonance
+    """
 
     speed: float
     frequency: float
+    damping_ratio: float
+    reach: tuple[float, ...]
 
 
 class Unbalance(NamedTuple):
@@ -55,14 +61,17 @@ def unbalances(lines: LineMatrices, point: RotorPoint) -> Iterator[Unbalance]:
         yield Unbalance(spin, angle, force)
 
 
-def critical_speeds(lines: LineMatrices, slower: RotorPoint, faster: RotorPoint) -> tuple[CriticalSpeed, ...]:
+def critical_speeds(lines: LineMatrices, slower: RotorPoint, faster: RotorPoint, places: Sequence[str] = ()) -> tuple[CriticalSpeed, ...]:
     """Undamped critical speeds that the unbalance of the scene excites, ascending.
 
     slower, faster : steady rotation at two speeds of the reference shaft; what differs in damping is gyroscopic
+    places : whose ``reach`` is wanted
 
     With the gyroscopic matrix G per unit speed of the reference shaft and a rotor that turns r times as fast,
     K q = W^2 (r^2 M - i r G) q: all critical speeds from one problem.  A mode that the unbalance does no work on
-    is left out.  Leaves out damping, and takes the stiffness of bearings at ``faster`` for all speeds.
+    is left out.  The reach of a shape v under the unbalance F is |v| |v.F| / (v.K v) at a place, its damping ratio
+    W v.D v / (2 v.K v).  Leaves out what damping does to shapes and speeds, and takes the stiffness of bearings at
+    ``faster`` for all speeds.
     """
     before, system = (lines.at(point.angles, point.speeds, point.states) for point in (slower, faster))
     lateral = [k for k, body in enumerate(lines.network.bodies) if body.lateral]
@@ -70,6 +79,8 @@ def critical_speeds(lines: LineMatrices, slower: RotorPoint, faster: RotorPoint)
     difference = (system.damping - before.damping)[at] / (faster.speed - slower.speed)
     gyroscopic = 0.5 * (difference - difference.T)
     stiffness = 0.5 * (system.stiffness + system.stiffness.T)[at]
+    order = {lines.names[k]: place for place, k in enumerate(lateral)}
+    rows = [[order[f"{lines.network.places[place]}.{key}"] for key in "xy"] for place in places]
     forces: dict[float, list[ComplexArray]] = {}
     for item in unbalances(lines, faster):
         forces.setdefault(round(item.spin / faster.speed, 12), []).append(item.force[lateral])
@@ -81,11 +92,15 @@ def critical_speeds(lines: LineMatrices, slower: RotorPoint, faster: RotorPoint)
             continue
         real = np.isfinite(squares) & (squares.real > 0.0) & (np.abs(squares.imag) <= 1e-6 * np.abs(squares.real))
         speeds, shapes = np.sqrt(squares[real].real), shapes[:, real]
-        # work of the unbalance on the shape over its elastic energy: how fast it builds up
-        energy = np.abs(np.einsum("ik,ij,jk->k", shapes.conj(), stiffness, shapes))
-        work = sum(np.abs(shapes.conj().T @ force) ** 2 for force in group) / np.where(energy > 0.0, energy, np.inf)
-        excited = work > EXCITED * float(np.max(work, initial=0.0))
-        found += [CriticalSpeed(float(w), float(abs(ratio) * w)) for w in speeds[excited]]
+        elastic = np.abs(np.einsum("ik,ij,jk->k", shapes.conj(), stiffness, shapes))
+        lost = np.einsum("ik,ij,jk->k", shapes.conj(), system.damping[at], shapes).real
+        work = np.abs(shapes.conj().T @ sum(group)) * (speeds / faster.speed) ** 2
+        size = np.where(elastic > 0.0, work / np.where(elastic > 0.0, elastic, 1.0), 0.0)
+        largest = size * np.max(np.abs(shapes), axis=0, initial=0.0)
+        for k in np.nonzero(largest > EXCITED * float(np.max(largest, initial=0.0)))[0]:
+            frequency = abs(ratio) * float(speeds[k])
+            reach = tuple(float(size[k]) * float(np.max(np.abs(shapes[row, k]))) for row in rows)
+            found.append(CriticalSpeed(float(speeds[k]), frequency, 0.5 * frequency * float(lost[k] / elastic[k]), reach))
     found.sort(key=lambda item: item.speed)
     return tuple(item for k, item in enumerate(found) if k == 0 or item.speed > found[k - 1].speed * (1.0 + 1e-9))
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +15,7 @@ from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.signals import FloatArray
 
-MOMENTS = 400
+MOMENTS = 2000
 """Samples of the run over which torques are averaged."""
 
 HELD = 0.05
@@ -58,7 +60,8 @@ def torque_balance(network: Network, response: Response, reference: str, start: 
     """Balance of the mean torques from ``start`` to ``end`` [s].
 
     sum(r_i Q_i) = sum(r_i^2 J_i) W' + M_whirl  with the ideal ratios r_i: elastic torques cancel, and what the spin of
-    unbalanced rotors feels from their whirl remains.  Leaves out what twisting of the line stores meanwhile.
+    unbalanced rotors feels from their whirl remains.  Means are weighted with (t - start)(end - t): the mean of W' is then
+    the slope of the least-squares straight line through W (integrate by parts), which oscillations hardly move.
     """
     inside = np.nonzero((response.times >= start) & (response.times <= end))[0]
     times = response.times[inside]
@@ -67,6 +70,8 @@ def torque_balance(network: Network, response: Response, reference: str, start: 
     inertia = sum(body.ratio**2 * body.inertia for body in spins)
     slope, mean = np.polyfit(times - 0.5 * (times[0] + times[-1]), speeds, 1) if len(times) > 1 else (0.0, float(speeds[0]))
     few = inside[np.unique(np.linspace(0, len(inside) - 1, MOMENTS).astype(int))]
+    at = response.times[few]
+    weights = (at - times[0]) * (times[-1] - at) if len(few) > 2 else np.ones(len(few))
     angles: dict[str, FloatArray] = {}
     rates: dict[str, FloatArray] = {}
     for body in network.bodies:
@@ -76,13 +81,13 @@ def torque_balance(network: Network, response: Response, reference: str, start: 
 
     def applied(factor: float) -> float:
         faster = {body.name: rates[body.name] * (1.0 if body.lateral else factor) for body in network.bodies}
-        moment = network.moment(response.times[few], angles, faster, states)
+        moment = network.moment(at, angles, faster, states)
 
-        def total(at: Moment) -> Value:
-            torques = network.torques(at)
-            return sum(body.sense * body.ratio * torques[body.name] for body in spins) + 0.0 * at.time
+        def total(here: Moment) -> Value:
+            torques = network.torques(here)
+            return sum(body.sense * body.ratio * torques[body.name] for body in spins) + 0.0 * here.time
 
-        return float(np.mean(read_over(total, moment)))
+        return _mean(at, read_over(total, moment), weights)
 
     torque = applied(1.0)
     return TorqueBalance(
@@ -95,14 +100,20 @@ def torque_balance(network: Network, response: Response, reference: str, start: 
     )
 
 
-def _vanishing(applied, torque: float) -> float:  # type: ignore[no-untyped-def]
+def _mean(times: FloatArray, values: FloatArray, weights: FloatArray) -> float:
+    if len(times) < 2:
+        return float(values[0])
+    return float(np.trapezoid(weights * values, times) / np.trapezoid(weights, times))
+
+
+def _vanishing(applied: Callable[[float], float], torque: float) -> float:
     """Factor on all speeds at which the applied torque first vanishes; 1 where it does not drive."""
     if not torque > 0.0:
         return 1.0
     factors = np.geomspace(1.0, FASTEST, 80)
     sign = math.copysign(1.0, applied(1.0))
     before = torque
-    for low, high in zip(factors[:-1], factors[1:], strict=True):
+    for low, high in itertools.pairwise(factors):
         here = sign * applied(float(high))
         if here <= 0.0:
             return float(low + (high - low) * before / (before - here))

@@ -49,6 +49,12 @@ def rotor_sources(network: Network) -> list[UnbalanceSource]:
     F_x + i F_y = U w^2 exp(i phi) and M_y - i M_x = -J w^2 exp(i phi) with U = m e and J = J_xz + i J_yz.
     """
     ratios = {body.name: body.ratio for body in network.bodies}
+    prescribed = [element.name.partition(".unbalance_")[0] for element in network.elements if ".unbalance_" in element.name]
+    if prescribed:
+        raise AnalysisError(
+            f"The motion of the unbalanced rotor {prescribed[0]!r} is prescribed by something else than a motor, so its speed cannot "
+            "be varied. Drive it by a Motor with an IdealSpeedMotor."
+        )
     sources = []
     for rotor in network.rotors:
         static, product = rotor.body.static_unbalance, rotor.body.product_unbalance

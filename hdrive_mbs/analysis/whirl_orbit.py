@@ -37,7 +37,7 @@ class WhirlOrbit:
     @property
     def negative(self) -> ComplexArray:
         """p-, the circle about -z."""
-        return 0.5 * np.conj(self.x - 1j * self.y)
+        return np.asarray(0.5 * np.conj(self.x - 1j * self.y), complex)
 
     @property
     def forward(self) -> FloatArray:

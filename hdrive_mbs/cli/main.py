@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from hdrive_mbs import __version__
-from hdrive_mbs.cli import demo, effects, modes, run, teeth, torsion
+from hdrive_mbs.cli import bench, campbell, demo, effects, modes, run, run_up, teeth, torsion, unbalance
 from hdrive_mbs.errors import HdriveError
 
 app = typer.Typer(
@@ -35,6 +35,10 @@ def _options(
 
 for command in (run.run, modes.modes, torsion.torsion, effects.effects, teeth.teeth, demo.demo):
     app.command()(command)
+app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})(bench.bench)
+app.command()(unbalance.unbalance)
+app.command()(campbell.campbell)
+app.command()(run_up.run_up)
 
 
 def main() -> None:

@@ -42,13 +42,14 @@ def module_of(path: Path) -> ModuleType:
     """The module in a .py file, run once."""
     if not path.is_file():
         raise FileFormatError(f"{path}: no such file. Give a .py file with build() -> Scene, or a .toml or .json scene.")
-    spec = importlib.util.spec_from_file_location(path.stem, path)
+    spec = importlib.util.spec_from_file_location(f"scene_file_{path.stem}", path)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     beside = str(path.resolve().parent)
     if beside not in sys.path:
         sys.path.insert(0, beside)  # as python itself does for a script: a scene may import what lies beside it
+    sys.modules[spec.name] = module  # a dataclass in the file looks its module up there
     spec.loader.exec_module(module)
     return module
 

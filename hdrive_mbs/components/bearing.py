@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,6 +43,11 @@ class Bearing(Component):
             raise ParameterError(f"Bearing.law = {self.law!r}: must be a bearing law, for instance a LinearBearing(...).")
         if self.housing is not None and not isinstance(self.housing, Housing):
             raise ParameterError(f"Bearing.housing = {self.housing!r}: must be a Housing(...) or None.")
+        if self.polar_inertia > 2.0 * self.transverse_inertia * (1.0 + 1e-9):
+            raise ParameterError(
+                f"Bearing.polar_inertia = {self.polar_inertia:g} kg m^2 is more than twice transverse_inertia = "
+                f"{self.transverse_inertia:g} kg m^2, which no body has (Jx + Jy >= Jz). Were the two exchanged, or one left out?"
+            )
 
     def flanges(self) -> tuple[Flange, ...]:
         ring = RigidMass.rotor(self.mass, self.polar_inertia, self.transverse_inertia)
@@ -79,7 +84,7 @@ def add_housing(name: str, draft: Draft, housing: Housing | None) -> tuple[str, 
         names.append(coordinate)
         draft.add_matrix(f"{name}.foundation_{key}", (), (coordinate,), stiffness=np.array([[stiffness]]), damping=np.array([[damping]]))
         if power != 0.0:
-            draft.add_relative_torque(f"{name}.foundation_{key}_power", {coordinate: 1.0}, _power_law(power, int(housing.power)))
+            draft.add_relative_torque(f"{name}.foundation_{key}_power", {coordinate: 1.0}, power_law(power, int(housing.power)))
     return tuple(names)
 
 
@@ -108,13 +113,14 @@ def add_housing_across(name: str, draft: Draft, station: Station, housing: Housi
         )
         factors = {**stretches[key], across: -1.0}
         if power != 0.0:
-            draft.add_relative_torque(f"{name}.foundation_{key}_power", factors, _power_law(power, int(housing.power)))
+            draft.add_relative_torque(f"{name}.foundation_{key}_power", factors, power_law(power, int(housing.power)))
         draft.add_displacement(f"{name}.housing.{key}", factors, "m", f"housing of {name} in {key}")
         stretches[key] = {across: 1.0}
     return stretches
 
 
-def _power_law(factor: float, exponent: int) -> Torque:
+def power_law(factor: float, exponent: int) -> Torque:
+    """factor * x^exponent."""
     return lambda moment, x, v: factor * raised(x, exponent)
 
 
@@ -138,6 +144,18 @@ def add_bearing(name: str, draft: Draft, station: Station, law: BearingLaw, stre
     if stiffness.any() or damping.any():
         draft.add_coordinate_matrix(f"{name}.coefficients", names, stiffness=rows.T @ stiffness @ rows, damping=rows.T @ damping @ rows)
 
+    add_law(name, draft, law, stretches)
+
+
+def add_law(
+    name: str, draft: Draft, law: BearingLaw, stretches: Mapping[str, Mapping[str, float]], offset: Callable[[int], float] = lambda row: 0.0
+) -> None:
+    """Forces of a law on top of its matrices, along its six stretches, and the channels of its whole force on the housing.
+
+    offset : what the channels add to the stretch of each direction [m, rad]
+    """
+    stiffness, damping = np.asarray(law.stiffness_matrix(), float), np.asarray(law.damping_matrix(), float)
+
     def forces(moment: Moment, s: Mapping[str, Value], v: Mapping[str, Value]) -> Mapping[str, Value]:
         return law.forces(_relative(s, v))
 
@@ -146,7 +164,8 @@ def add_bearing(name: str, draft: Draft, station: Station, law: BearingLaw, stre
     for row, direction in enumerate("xy"):
 
         def read(moment: Moment, row: int = row, direction: str = direction) -> Value:
-            s = {key: sum(f * moment.angle(c) for c, f in factors.items()) for key, factors in stretches.items()}
+            along = enumerate(stretches.items())
+            s = {key: sum((f * moment.angle(c) for c, f in factors.items()), offset(k)) for k, (key, factors) in along}
             v = {key: sum(f * moment.speed(c) for c, f in factors.items()) for key, factors in stretches.items()}
             linear = sum(stiffness[row, k] * s[key] + damping[row, k] * v[key] for k, key in enumerate(DIRECTIONS))
             return linear + forces(moment, s, v).get(direction, 0.0)

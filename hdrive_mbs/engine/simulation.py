@@ -222,7 +222,7 @@ def _collect(assembly: Assembly, solver: Solver, duration: float, error: str, ca
 
 def _coordinates(assembly: Assembly, columns: Mapping[str, list[FloatArray]], kind: int, keep: FloatArray) -> dict[str, FloatArray]:
     """Coordinates (0), speeds (1) or accelerations (2) by name, counted forward."""
-    owner = {rotor.coordinates[0]: rotor.coordinates for rotor in assembly.network.rotors}
+    owner = {rotor.coordinates[0]: rotor.coordinates for rotor in assembly.network.rotors} | assembly.groups
     found: dict[str, FloatArray] = {}
     for name, group in columns.items():
         if kind < len(group):

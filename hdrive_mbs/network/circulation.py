@@ -33,15 +33,22 @@ class Circulation:
     @classmethod
     def between(cls, name: str, a: Station, b: Station, circulatory: FloatArray, dissipative: FloatArray) -> Circulation:
         """From C and B, 12x12 over two stations."""
-        names = (*a.names[:5], *b.names[:5])
-        keep = [k for k in range(12) if k % 6 < 5]
-        arm = np.zeros((12, 12))
-        arm[:6, :6], arm[6:, 6:] = a.arm(), b.arm()
-        used = list(dict.fromkeys(item for item in names if item != "ground"))
-        gather = np.array([[float(item == kept) for kept in used] for item in names])
-        made = [gather.T @ (arm.T @ matrix @ arm)[np.ix_(keep, keep)] @ gather for matrix in (circulatory, dissipative)]
-        spins = tuple((station.node, station.sense) for station in (a, b) if not station.held)
-        return cls(name, tuple(used), spins, made[0], made[1])
+        return cls.over(name, (a, b), (), circulatory, dissipative)
+
+    @classmethod
+    def over(
+        cls, name: str, ends: tuple[Station, Station], own: tuple[str, ...], circulatory: FloatArray, dissipative: FloatArray
+    ) -> Circulation:
+        """From C and B over the 6-vectors of two stations and further coordinates; phi without entries."""
+        names = [item for station in ends for item in station.names] + list(own)
+        arm = np.eye(len(names))
+        for k, station in enumerate(ends):
+            arm[6 * k : 6 * k + 6, 6 * k : 6 * k + 6] = station.arm()
+        left_out = {"ground", ends[0].names[5], ends[1].names[5]}
+        used = list(dict.fromkeys(item for item in names if item not in left_out))
+        gather = arm @ np.array([[float(item == kept) for kept in used] for item in names])
+        spins = tuple((station.node, station.sense) for station in ends if not station.held)
+        return cls(name, tuple(used), spins, gather.T @ circulatory @ gather, gather.T @ dissipative @ gather)
 
     def claims(self) -> tuple[Claim, ...]:
         """It feeds whirl above the critical speed: nothing to promise on its own."""

@@ -150,18 +150,25 @@ class Draft:
             node = self._nodes[station.node]
             self._nodes[station.node] = replace(node, mass=node.mass + mass.moved(station.offset))
 
-    def add_coordinate(self, name: str, *, inertia: float, unit: str, doc: str) -> str:
-        """A lateral coordinate of a part's own (a housing, a mode): channels name, name_rate and name_acceleration."""
-        self._bodies.append(Body(name, inertia, 1, 0.0, unit, lateral=True))
+    def add_coordinate(self, name: str, *, inertia: float, unit: str, doc: str, group: str = "") -> str:
+        """A lateral coordinate of a part's own (a housing, a mode): channels name, name_rate and name_acceleration.
+
+        group : see Body
+        """
+        self._bodies.append(Body(name, inertia, 1, 0.0, unit, lateral=True, group=group))
         self.add_displacement(name, {name: 1.0}, unit, doc)
         return name
 
-    def add_displacement(self, name: str, factors: Mapping[str, float], unit: str, doc: str) -> None:
-        """Channels name, name_rate and name_acceleration of a sum of lateral coordinates."""
+    def add_displacement(
+        self, name: str, factors: Mapping[str, float], unit: str, doc: str, offset: Callable[[], float] = lambda: 0.0
+    ) -> None:
+        """Channels name, name_rate and name_acceleration of a sum of lateral coordinates and a constant offset."""
         if name in self._channels:
             return
         rate = f"{name}_rate"
-        self._channels[name] = Channel(name, unit, doc, lambda m: sum(f * m.angle(c) for c, f in factors.items()), rate, factors)
+        self._channels[name] = Channel(
+            name, unit, doc, lambda m: sum((f * m.angle(c) for c, f in factors.items()), offset()), rate, factors
+        )
         self._channels[rate] = Channel(
             rate, f"{unit}/s", f"rate of the {doc}", lambda m: sum(f * m.speed(c) for c, f in factors.items()), f"{name}_acceleration"
         )
@@ -175,10 +182,12 @@ class Draft:
         stiffness: FloatArray,
         damping: FloatArray | None = None,
         mass: FloatArray | None = None,
+        falling: FloatArray | None = None,
     ) -> None:
         """Constant matrices over the 6-vectors of stations (x, y, z, psi, theta, phi in true sense), then coordinates.
 
-        Rows and columns of phi must be zero: torsion is a connection, which effects can change.
+        Rows and columns of phi must be zero in stiffness and damping: torsion is a connection, which effects can change.
+        falling : see MatrixElement
         """
         names = [name for station in stations for name in station.names] + list(coordinates)
         arm = np.eye(len(names))
@@ -189,11 +198,12 @@ class Draft:
             arm.T @ np.asarray(item, float) @ arm
             for item in (zero if mass is None else mass, zero if damping is None else damping, stiffness)
         ]
-        spins = {station.names[5] for station in stations}
-        used = list(dict.fromkeys(item for item in names if item != "ground" and item not in spins))
+        light = {station.names[5] for k, station in enumerate(stations) if not matrices[0][6 * k + 5].any()}
+        used = list(dict.fromkeys(item for item in names if item != "ground" and item not in light))
         gather = np.array([[float(item == kept) for kept in used] for item in names])
         made = [gather.T @ item @ gather for item in matrices]
-        self._elements.append(MatrixElement(name, tuple(used), made[0], made[1], made[2]))
+        weight = None if falling is None else gather.T @ arm.T @ falling
+        self._elements.append(MatrixElement(name, tuple(used), made[0], made[1], made[2], weight))
 
     def add_coordinate_matrix(self, name: str, names: tuple[str, ...], *, stiffness: FloatArray, damping: FloatArray) -> None:
         """Constant matrices over coordinates by name ("ground" is held)."""
@@ -212,6 +222,11 @@ class Draft:
     def add_element(self, element: Element) -> None:
         """Any element: something with a name and contribution(moment)."""
         self._elements.append(element)
+
+    @property
+    def gravity(self) -> tuple[float, float, float]:
+        """Gravity [m/s^2]; known when all parts are built."""
+        return self._gravity
 
     def set_gravity(self, acceleration: tuple[float, float, float]) -> None:
         """Gravity for all lateral motion [m/s^2].  Raises SceneError when the scene has one already."""
@@ -310,6 +325,7 @@ class Draft:
                     "Give the part an inertia, put an Inertia there, or connect it rigidly."
                 )
         bodies += self._bodies
+        self._elements = [item.without(self._motions) if isinstance(item, MatrixElement) else item for item in self._elements]
         self._check_masses(bodies)
         self._add_weights()
         if not bodies:
@@ -383,7 +399,8 @@ class Draft:
                     self._elements.append(constant_force(f"{body.name}.weight", body.name, value * body.inertia))
         for element in [item for item in self._elements if isinstance(item, MatrixElement) and item.mass.any()]:
             field_ = np.array([sum(value for ending, value in falls.items() if name.endswith(ending)) for name in element.coordinates])
-            for name, force in zip(element.coordinates, element.mass @ field_, strict=True):
+            forces = element.mass @ field_ if element.falling is None else element.falling @ np.array(self._gravity)
+            for name, force in zip(element.coordinates, forces, strict=True):
                 if force != 0.0:
                     self._elements.append(constant_force(f"{element.name}.{name}.weight", name, float(force)))
 

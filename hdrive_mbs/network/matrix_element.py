@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,8 @@ class MatrixElement:
 
     coordinates : n names
     mass, damping, stiffness : n x n; unsymmetric stiffness is allowed (cross-coupled bearings)
+    falling : force per acceleration of gravity in x, y and z [kg], (n, 3), where coordinates are not displacements
+        of places alone; None: the mass times those that are
     """
 
     name: str
@@ -27,6 +30,18 @@ class MatrixElement:
     mass: FloatArray
     damping: FloatArray
     stiffness: FloatArray
+    falling: FloatArray | None = None
+
+    def without(self, names: Collection[str]) -> MatrixElement:
+        """The element over the other coordinates, with these at rest."""
+        kept = [k for k, name in enumerate(self.coordinates) if name not in names]
+        if len(kept) == len(self.coordinates):
+            return self
+        at = np.ix_(kept, kept)
+        falling = None if self.falling is None else self.falling[kept]
+        return MatrixElement(
+            self.name, tuple(self.coordinates[k] for k in kept), self.mass[at], self.damping[at], self.stiffness[at], falling
+        )
 
     def claims(self) -> tuple[Claim, ...]:
         """Matrices promise nothing."""

@@ -26,6 +26,7 @@ class Body:
     ratio : ideal speed of this body per speed of the driving motor, in true sense (0 for lateral motions)
     unit : unit of the coordinate, "rad" or "m"
     lateral : whether it is a lateral, axial or tilting motion and not the turning of a place
+    group : coordinates in a row with the same group are used together, so that the engine can keep them in one node
     """
 
     name: str
@@ -34,6 +35,7 @@ class Body:
     ratio: float
     unit: str = "rad"
     lateral: bool = False
+    group: str = ""
 
 
 @dataclass(frozen=True)

@@ -4,16 +4,25 @@ from __future__ import annotations
 
 from hdrive_mbs.plots import (
     campbell,
+    critical_map,
+    deflection_line,
     energy,
     modes,
+    orbit,
+    order_tracking,
     reduction,
     response,
+    run_up,
     spectrum,
     teeth_clearance,
     teeth_design,
     teeth_positions,
     teeth_section,
     torsion,
+    unbalance_response,
+    waterfall,
+    whirl_campbell,
+    whirl_modes,
 )
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import house_look
@@ -23,12 +32,17 @@ from hdrive_mbs.plots.teeth_animation import animate
 __all__ = [
     "animate",
     "campbell",
+    "critical_map",
+    "deflection_line",
     "energy",
     "house_look",
     "modes",
+    "orbit",
+    "order_tracking",
     "plot",
     "reduction",
     "response",
+    "run_up",
     "save_figure",
     "spectrum",
     "teeth_clearance",
@@ -36,4 +50,8 @@ __all__ = [
     "teeth_positions",
     "teeth_section",
     "torsion",
+    "unbalance_response",
+    "waterfall",
+    "whirl_campbell",
+    "whirl_modes",
 ]

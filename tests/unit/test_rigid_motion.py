@@ -168,7 +168,7 @@ def test_accelerations_are_those_of_exudyns_own_rigid_body(seed: int, sense: int
 @pytest.mark.parametrize("axial", [0.0, 0.35, -0.8])
 def test_a_body_seen_from_further_back_is_the_same_body(axial: float) -> None:
     cloud = Cloud.random(1)
-    moved = Cloud(cloud.masses, cloud.places + [0.0, 0.0, axial])
+    moved = Cloud(cloud.masses, cloud.places + np.array([0.0, 0.0, axial]))
     found, wanted = cloud.body().moved(axial), moved.body()
     assert found.mass == wanted.mass
     assert_same(found.centre, wanted.centre)

@@ -122,6 +122,63 @@ EFFECTS: tuple[tuple[Effect, str], ...] = (
 )
 
 
+LINEAR = hm.LinearBearing.isotropic(radial=1e7, damping=100.0, axial=1e6, tilt=2e3)
+COUPLED = np.diag([2e6, 1e6, 0.0, 10.0, 20.0, 0.0]) + np.fliplr(np.diag([0.0, 30.0, 0.0, 0.0, 40.0, 0.0]))
+"""y and theta act on each other, besides the diagonal [N/m, N/rad, N m/rad]."""
+BEARINGS: tuple[hm.BearingLaw, ...] = (
+    LINEAR,
+    hm.LinearBearing.from_matrices(stiffness=COUPLED, damping=1e-4 * COUPLED),
+    hm.PowerBearing.isotropic(power_radial=1e14, radial=1e7, damping=10.0, exponent=5.0),
+    hm.BallBearing(balls=9.0, contact_stiffness=7e9, ball_diameter=8e-3, pitch_diameter=0.04, radial_clearance=5e-6, axial_stiffness=1e6),
+    hm.JournalBearing(diameter=0.05, length=0.02, radial_clearance=5e-5, viscosity=0.03, wall_stiffness=1e9),
+    hm.TableBearing(speeds=(0.0, 100.0), stiffness_xx=(1e6, 2e6), stiffness_yy=(1e6, 3e6), damping_xx=(10.0, 20.0), damping_yy=(5.0, 5.0)),
+    hm.WithFriction(law=LINEAR, bore=0.03, friction=0.1, turning_friction=0.002),
+)
+
+
+def rotor_scene(law: hm.BearingLaw) -> hm.Scene:
+    """A bearing in a housing, an unbalanced rotor, shafts of both kinds, a drive and weight."""
+    housing = hm.Housing.isotropic(mass=2.0, stiffness=5e6, damping=100.0, power_stiffness=1e13, power=5.0)
+    steel = {"youngs_modulus": 2.1e11, "shear_modulus": 8.1e10}
+    ring = {"mass": 0.3, "polar_inertia": 3e-4, "transverse_inertia": 2e-4}
+    parts = {
+        "drive": hm.DriveTorque(characteristic=kloss_motor()),
+        "bearing": hm.Bearing(law=law, housing=housing, **ring),
+        "shaft": hm.ShaftSection(
+            length=0.2, diameter=0.03, bore=0.01, density=7800.0, elements=3.0, shear=True, rotary_inertia=False, **steel
+        ),
+        "rotor": hm.Rotor(mass=5.0, polar_inertia=0.03, transverse_inertia=0.02, eccentricity=1e-5, angle=0.3, tilt=1e-4, tilt_angle=1.0),
+        "piece": hm.RigidSection(length=0.05),
+        "end": hm.Bearing(law=LINEAR),
+        "gravity": hm.Gravity(y=-9.81),
+    }
+    return hm.Scene(name="rotor line", parts=parts, connections=[("drive", "bearing", "shaft", "rotor", "piece", "end")])
+
+
+def supported_scene() -> hm.Scene:
+    """Two shafts on a coupling, each over a bearing that is no station."""
+    from hdrive_mbs.components.flexible_coupling import FlexibleCoupling
+    from hdrive_mbs.components.improved_section import ImprovedSection
+    from hdrive_mbs.components.simplified_section import SimplifiedSection
+
+    half = hm.ShaftSection(length=0.1, diameter=0.03, youngs_modulus=2.1e11, shear_modulus=8.1e10)
+    held = hm.Bearing(
+        law=LINEAR, mass=0.3, polar_inertia=3e-4, transverse_inertia=2e-4, housing=hm.Housing.isotropic(mass=2.0, stiffness=5e6)
+    )
+    disc = hm.Rotor(mass=5.0, polar_inertia=0.03, transverse_inertia=0.02)
+    coupling = FlexibleCoupling(torsional_stiffness=1e3, radial_stiffness=1e5, axial_stiffness=1e4, tilt_stiffness=10.0)
+    parts = {
+        "first": disc,
+        "improved": ImprovedSection(left=half, bearing=held, right=half, highest_speed=500.0),
+        "second": disc,
+        "coupling": coupling,
+        "third": disc,
+        "simplified": SimplifiedSection(left=half, bearing=held, right=half),
+        "fourth": disc,
+    }
+    return hm.Scene(name="supported", parts=parts, connections=[tuple(parts)])
+
+
 def holding(law: Described) -> hm.Scene:
     """A train with the law where it belongs."""
     if isinstance(law, StiffnessLaw):
@@ -143,6 +200,8 @@ def example_scenes() -> dict[str, hm.Scene]:
     )
     controlled["encoder"] = Sensor(quantity="load.angle", gain=1e3, offset=0.5, resolution=1.0, unit="1")
     chain = ("motor", "input_shaft", "gear", "output_shaft", "load")
+    found["supported"] = supported_scene()
+    found |= {f"{type(law).__name__} {k}": rotor_scene(law) for k, law in enumerate(BEARINGS)}
     found["controlled"] = hm.Scene(name="controlled", parts=controlled, connections=[chain], notes="a 'quoted' \"note\"\nof two lines, °µ")
     rigid = {"disc": hm.Inertia(inertia=0.1, viscous=0.2), "joint": RigidCoupling(inertia=0.01), "end": hm.Inertia(inertia=1.0)}
     found["rigid"] = hm.Scene(name="rigid", parts=rigid, connections=[("disc", "joint", "end")])
@@ -177,7 +236,7 @@ def can_be_in_a_file(kind: type[Described]) -> bool:
 
 
 def test_there_is_an_example_of_every_class_that_a_scene_file_can_hold() -> None:
-    placeable = ("components", "effects", "flexsplines", "loads", "motors", "teeth")
+    placeable = ("bearings", "components", "effects", "flexsplines", "loads", "motors", "teeth")
     wanted = {
         name
         for name, kind in all_types().items()

@@ -1,0 +1,96 @@
+"""``hdrive-mbs campbell``: frequencies over speed, critical speeds and stability of a rotor line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hdrive_mbs.cli.options import Effects, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.output import print_table, write_json
+from hdrive_mbs.cli.scene_source import open_scene
+from hdrive_mbs.cli.speeds import parse_orders, parse_speeds
+
+if TYPE_CHECKING:
+    from hdrive_mbs.analysis.whirl_campbell import WhirlCampbell
+
+
+def campbell(
+    scene: ScenePath,
+    set_: Settings = None,
+    effect: Effects = None,
+    speeds: Annotated[
+        str, typer.Option(metavar="FIRST:LAST:COUNT", help="Speeds of the reference shaft [rad/s], or with units: '0:12000:101 rpm'.")
+    ] = "0:1000:101",
+    orders: Annotated[
+        str, typer.Option(metavar="N,N,...", help="Order lines, per turn of the reference shaft or 'PLACE=N,N;PLACE=N'.")
+    ] = "1",
+    count: Annotated[int | None, typer.Option(help="Number of branches; by default all near the highest order line.")] = None,
+    out: OutFolder = None,
+    json: JsonFile = None,
+) -> None:
+    """Damped frequencies, damping and whirl over speed; critical speeds and stability thresholds."""
+    from hdrive_mbs.analysis.whirl_campbell import campbell as analyse
+
+    chosen = open_scene(scene, set_ or (), effect or ())
+    result = analyse(chosen, parse_speeds("--speeds", speeds), parse_orders("--orders", orders), count=count)
+    if out is not None:
+        from hdrive_mbs.analysis.result import write_csv
+        from hdrive_mbs.plots import plot, save_figure
+
+        result.save(out / "campbell.npz")
+        result.to_csv(out / "campbell.csv")
+        write_csv(out / "critical_speeds.csv", result.critical_columns())
+        save_figure(plot(result), out / "campbell")
+    write_json(json, document(result))
+    if json != "-":
+        _print(chosen.name, result)
+
+
+def document(result: WhirlCampbell) -> dict[str, Any]:
+    """What --json writes."""
+    return {
+        "speeds": result.speeds,
+        "branches": [
+            {"whirl": word, "frequency": result.frequencies[:, k], "damping_ratio": result.damping_ratios[:, k]}
+            for k, word in enumerate(result.whirl)
+        ],
+        "critical_speeds": [
+            {"order": result.order_numbers[order], "whirl": word, "speed": float(speed)}
+            for order, word, speed in zip(result.critical_orders, result.critical_whirl, result.critical_speeds, strict=True)
+        ],
+    }
+
+
+def _print(name: str, result: WhirlCampbell) -> None:
+    first, last = result.speeds[0], result.speeds[-1]
+    rows = []
+    for k, word in enumerate(result.whirl):
+        ends = [float(result.frequencies[row, k]) for row in (0, -1)]
+        ratios = [float(result.damping_ratios[row, k]) for row in (0, -1)]
+        rows.append([str(k + 1), word, *(_shown(value) for pair in zip(ends, ratios, strict=True) for value in pair)])
+    headers = ["mode", "whirl"]
+    for speed in (first, last):
+        headers += [f"at {speed:g}: damped [rad/s]", "damping ratio"]
+    print_table(f"{name}: branches ({result.status})", headers, rows)
+    table = result.critical_columns()
+    criticals = [
+        [
+            f"{table['critical speed [rad/s]'][k]:.6g}",
+            f"{table['order'][k]:g} x {table['of'][k]}",
+            str(table["mode"][k]),
+            str(table["whirl"][k]),
+            _shown(float(table["damping ratio [1]"][k])),
+            _shown(float(table["amplification 1/(2 zeta) [1]"][k])),
+            str(table["note"][k]),
+        ]
+        for k in range(len(result.critical_speeds))
+    ]
+    print_table("critical speeds", ["speed [rad/s]", "order", "mode", "whirl", "damping ratio", "amplification", "note"], criticals)
+
+
+def _shown(value: float) -> str:
+    """Six digits; "-" for what is not there, 0 for rounding."""
+    if value != value:
+        return "-"
+    return "0" if abs(value) < 1e-9 else f"{value:.6g}"

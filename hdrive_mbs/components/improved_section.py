@@ -1,0 +1,179 @@
+"""The improved simplified bearing: component-mode synthesis of two sections, ring, bearing and housing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.bearings.law import DIRECTIONS
+from hdrive_mbs.bearings.looked_at import directions_looked_at
+from hdrive_mbs.components.bearing import add_law, power_law
+from hdrive_mbs.components.component import Flange
+from hdrive_mbs.components.supported_line import CondensedLine, condensed_line, supported_line
+from hdrive_mbs.components.supported_section import SupportedSection, add_place, add_spring, factors_of, turning
+from hdrive_mbs.network.circulation import Circulation
+from hdrive_mbs.network.draft import Draft
+from hdrive_mbs.network.station import LATERAL, UNITS, WORDS, Station
+from hdrive_mbs.quantities import parameter
+
+FloatArray = npt.NDArray[np.float64]
+
+CLEAR = 5.0
+"""The lowest mode left out lies at least this many times above the highest speed; what it would add is below 1/25 of a static share."""
+
+LAGGING = 0.01
+"""Share (speed times lag)^2 of the damping at the ring up to which the ring follows its neighbours statically."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImprovedSection(SupportedSection):
+    """The full model between a and b with the ring eliminated statically and the housing kept:  q = T (q_a, q_b, q_h, eta).
+
+        M_r = T^T M T,   D_r = T^T D T,   K_r = T^T K T
+
+    Bearing and foundation act in series, the damping of both is kept, and the shaft bends differently on both sides
+    of the bearing.  Source: R. R. Craig, M. C. C. Bampton, AIAA J. 6 (1968) 1313; see shafts/condensation.py.
+
+    Kept besides the housing, each where it is needed:
+
+    * of the ring, the directions that the law of the bearing looks at beyond symmetric constant matrices, counted
+      across the bearing: a nonlinear force acts at the true displacement;
+    * of the ring x and y, when its damping would lag: (highest_speed d/k)^2 above 0.01, d/k of the ring held at the ends;
+    * the spin of the ring, when the law looks at it or brakes it; else it follows the ends;
+    * fixed-interface modes below 5 times ``highest_speed``; without that speed none.
+
+    Static motion is exact.  Leaves out the inertia of the ring on its bearing above all these frequencies; its
+    gyroscopic moment is that of its polar inertia shared between the ends.
+    """
+
+    highest_speed: float | None = parameter(
+        "rad/s", "fastest rotation or vibration that must come out right; none: slow against all that is left out", default=None, above=0.0
+    )
+
+    @cached_property
+    def looked_at(self) -> tuple[str, ...]:
+        """Directions of the ring that the bearing's law needs as coordinates."""
+        return directions_looked_at(self.bearing.law)
+
+    @property
+    def keeps_spin(self) -> bool:
+        """Whether the ring turns by itself."""
+        return "phi" in self.looked_at
+
+    @cached_property
+    def kept(self) -> tuple[str, ...]:
+        """Lateral directions of the ring that stay coordinates."""
+        found = tuple(key for key in LATERAL if key in self.looked_at)
+        if self.highest_speed is not None and not {"x", "y"} <= set(found):
+            line = supported_line(self.left, self.bearing, self.right)
+            lag = condensed_line(line, self._names(found)).lag
+            if (self.highest_speed * lag) ** 2 > LAGGING:
+                found = tuple(key for key in LATERAL if key in (*found, "x", "y"))
+        return found
+
+    def _names(self, ring: tuple[str, ...]) -> tuple[str, ...]:
+        housing = ("housing.x", "housing.y") if self.bearing.housing is not None else ()
+        return (*housing, *(f"ring.{key}" for key in ring))
+
+    @cached_property
+    def condensed(self) -> CondensedLine:
+        """The matrices and how the ring follows."""
+        line = supported_line(self.left, self.bearing, self.right).across([key for key in self.kept if key in "xy"])
+        above = 0.0 if self.highest_speed is None else CLEAR * self.highest_speed
+        return condensed_line(line, self._names(self.kept), above=above)
+
+    def flanges(self) -> tuple[Flange, ...]:
+        if not self.keeps_spin:
+            return super().flanges()
+        ends, halves = super().flanges(), [part.beam().end_polar_inertia() for part in (self.left, self.right)]
+        made = [Flange(name=end.name, lateral=True, mass=turning(half), axial=end.axial, free=end.free) for end, half in zip(ends, halves)]
+        return (*made, Flange(name="ring", inertia=self.bearing.polar_inertia + sum(halves), free=True))
+
+    def relations(self) -> tuple[Mapping[str, float], ...]:
+        return ({"a": 1.0, "ring": -1.0}, {"ring": 1.0, "b": -1.0}) if self.keeps_spin else super().relations()
+
+    def build(self, name: str, draft: Draft) -> None:
+        a, b = self.stations(name, draft)
+        line = self.condensed
+        own = tuple(self._add_coordinate(name, draft, kept) for kept in line.kept)
+        draft.add_matrix(
+            f"{name}.section",
+            (a, b),
+            own,
+            mass=line.mass if self.keeps_spin else self.with_coupled_spins(line.mass),
+            damping=line.damping,
+            stiffness=line.stiffness,
+            falling=line.falling,
+        )
+        if line.rotating.any():
+            draft.add_element(Circulation.over(f"{name}.rotating_damping", (a, b), own, line.circulatory, line.rotating))
+        if self.keeps_spin:
+            self._add_two_springs(name, draft, a, b)
+        else:
+            self.add_twist(name, draft, a, b)
+        rows = {key: factors_of(line.ring[k], a, b, own) for k, key in enumerate(LATERAL)}
+        add_place(name, draft, rows, line.ring_sag)
+        self._add_housing(name, draft)
+        self._add_law(name, draft, rows)
+
+    def _add_coordinate(self, name: str, draft: Draft, kept: str) -> str:
+        """The coordinate of the network for a coordinate of the condensed line."""
+        place, _, key = kept.partition(".")
+        if place == "housing":
+            coordinate, unit, doc = f"{name}.{kept}", "m", f"housing of {name} in {key}"
+        elif place == "ring" and self._is_across(key):
+            coordinate, unit, doc = f"{name}.across_{key}", "m", f"displacement across {name} in {key}"
+        elif place == "ring":
+            coordinate, unit, doc = f"{name}.{key}", UNITS[key], f"{WORDS[key]} of {name}"
+        else:
+            coordinate, unit, doc = f"{name}.{kept}", "m", f"amplitude of fixed-interface {kept} of {name}"
+        # a symbolic coupling takes six coordinates of whole groups, so those of a nonlinear law are a group by themselves
+        group = f"{name}.law" if place == "ring" and self.looked_at else name
+        return draft.add_coordinate(coordinate, inertia=0.0, unit=unit, doc=doc, group=group)
+
+    def _is_across(self, key: str) -> bool:
+        """Whether the ring's displacement is counted from the housing."""
+        return self.bearing.housing is not None and key in ("x", "y")
+
+    def _add_two_springs(self, name: str, draft: Draft, a: Station, b: Station) -> None:
+        """The pieces left and right of a ring that turns by itself."""
+        ring = draft.body(f"{name}.ring", asked_by=repr(name))
+        for key, part, ends in (("left", self.left, (a, ring)), ("right", self.right, (ring, b))):
+            stiffness = part.shear_modulus * part.beam().polar_moment / part.length
+            add_spring(f"{name}.{key}", draft, *ends, stiffness, (part.damping + part.rotating_damping) * stiffness)
+
+    def _add_housing(self, name: str, draft: Draft) -> None:
+        """The power term of the foundation; all else is in the matrices."""
+        housing = self.bearing.housing
+        if housing is None:
+            return
+        for key, factor in (("x", housing.power_stiffness_x), ("y", housing.power_stiffness_y)):
+            if factor != 0.0:
+                coordinate = f"{name}.housing.{key}"
+                draft.add_relative_torque(
+                    f"{name}.foundation_{key}_power", {coordinate: 1.0}, power_law(factor, int(housing.power))
+                )
+
+    def _add_law(self, name: str, draft: Draft, rows: Mapping[str, Mapping[str, float]]) -> None:
+        """The forces of the law along the coordinates kept for them, and its whole force as channels."""
+        stretches: dict[str, dict[str, float]] = {key: dict(rows[key]) for key in LATERAL}
+        if self.bearing.housing is not None:
+            for key in "xy":
+                coordinate = f"{name}.housing.{key}"
+                stretches[key][coordinate] = stretches[key].get(coordinate, 0.0) - 1.0
+        for key in self.kept:
+            stretches[key] = {f"{name}.across_{key}" if self._is_across(key) else f"{name}.{key}": 1.0}
+        stretches["phi"] = {}
+        if self.keeps_spin:
+            ring = draft.body(f"{name}.ring")
+            stretches["phi"] = {ring.name: float(ring.sense)}
+        sag = self.condensed.ring_sag
+
+        def offset(row: int) -> float:
+            return float(sag[row] @ np.array(draft.gravity)) if row < len(sag) else 0.0
+
+        add_law(name, draft, self.bearing.law, {key: stretches[key] for key in DIRECTIONS}, offset)

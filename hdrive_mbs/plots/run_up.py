@@ -1,0 +1,135 @@
+"""Picture of a run-up: speed over time, and the whirl of every rotor over its speed (seed M, Figs. 6 and 10)."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from hdrive_mbs.analysis.run_up import RunUp
+from hdrive_mbs.errors import ParameterError, unknown_place
+from hdrive_mbs.plots.dispatch import plot
+from hdrive_mbs.plots.lengths import shown_unit
+from hdrive_mbs.plots.look import COLOURS, GREY, house_look, legend_above, new_figure, number, other_unit, readable, style
+from hdrive_mbs.plots.thinning import thinned
+
+PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8}
+NEGLIGIBLE = 1e-9
+"""A rotor that whirls less than this share of the largest has no panel."""
+
+ORIGINS = {
+    "static": ("whirl", "mass_centre_whirl", "whirl about rest"),
+    "axis": ("radial", "mass_centre_radial", "distance from axis"),
+}
+
+
+@plot.register
+def plot_run_up(
+    result: RunUp, ax: Axes | None = None, *, rotors: Sequence[str] | None = None, about: str = "static", logarithmic: bool = False
+) -> Axes:
+    """Amplitudes of geometric and mass centre over the speed, one panel per rotor, below the speed over time; returns the top one.
+
+    rotors : which; all that whirl if not given
+    about : "static" for the whirl about the static position, "axis" for the distance from the axis
+    logarithmic : amplitudes on a logarithmic scale
+    With ``ax`` the first of these rotors goes there.
+    """
+    if about not in ORIGINS:
+        raise ParameterError(f"about = {about!r}: must be one of {', '.join(ORIGINS)}.")
+    chosen = list(rotors) if rotors is not None else _whirling(result)
+    for name in chosen:
+        if name not in result.rotors:
+            raise unknown_place("rotor", name, result.rotors, "This run")
+    with house_look():
+        if ax is not None:
+            _rotor(ax, result, chosen[0], about, logarithmic)
+            legend_above(ax)
+            return ax
+        figure = new_figure(7.2, 2.4 + 2.0 * len(chosen))
+        grid = figure.add_gridspec(1 + len(chosen), 1, height_ratios=[0.62] + [1.0] * len(chosen))
+        first = figure.add_subplot(grid[0])
+        _speed(first, result)
+        panels: list[Axes] = []
+        for k, name in enumerate(chosen):
+            panel = figure.add_subplot(grid[1 + k], sharex=panels[0] if panels else None)
+            _rotor(panel, result, name, about, logarithmic)
+            panel.set_title(readable(name))
+            if k < len(chosen) - 1:
+                panel.set_xlabel("")
+                panel.tick_params(labelbottom=False)
+            panels.append(panel)
+        figure.align_ylabels([first, *panels])
+        named = {label: handle for panel in panels for handle, label in zip(*panel.get_legend_handles_labels(), strict=True)}
+        figure.legend(list(named.values()), list(named), loc="outside lower left", ncols=3)
+        if result.scene is not None:
+            said = result.status.removeprefix("complete").lstrip("; ")
+            note = "\n" + textwrap.fill(said, 92) if said else ""
+            figure.suptitle(f"{result.scene.name}: {number(result.final_speed)}\u2009rad/s at the end{note}", x=0.01, ha="left")
+    return first
+
+
+def _whirling(result: RunUp) -> list[str]:
+    largest = max(result.peak_amplitude.values())
+    return [name for name in result.rotors if result.peak_amplitude[name] > NEGLIGIBLE * largest] or [result.rotors[0]]
+
+
+def _speed(ax: Axes, result: RunUp) -> None:
+    name = f"{result.reference}.speed"
+    ax.plot(*thinned(result.times, result.values[name]), **style(0))
+    for critical in result.critical_speeds:
+        if critical <= np.max(np.abs(result.values[name])):
+            ax.axhline(np.copysign(critical, result.final_speed or 1.0), color=GREY, linestyle="--", linewidth=0.9)
+    ax.set_xlabel("time [s]")
+    ax.set_ylabel("speed [rad/s]")
+    ax.margins(x=0.0)
+    right = ax.secondary_yaxis("right", functions=other_unit(30.0 / np.pi))
+    right.set_ylabel("speed [rpm]")
+    right.spines["right"].set_visible(True)
+
+
+def _rotor(ax: Axes, result: RunUp, name: str, about: str, logarithmic: bool) -> None:
+    speed = np.abs(result.values[f"{name}.speed"])
+    centre, mass, what = ORIGINS[about]
+    shown = [(centre, "geometric centre C")]
+    if not np.array_equal(result.values[f"{name}.{mass}"], result.values[f"{name}.{centre}"]):
+        shown.append((mass, "centre of mass P"))
+    largest = max(float(result.values[f"{name}.{ending}"].max()) for ending, _ in shown)
+    factor, unit = shown_unit("m", largest)
+    for k, (ending, label) in enumerate(shown):
+        times, values = thinned(result.times, result.values[f"{name}.{ending}"], 2500)
+        ax.plot(np.interp(times, result.times, speed), factor * values, label=label, **{**style(k), "linewidth": 1.2 - 0.3 * k})
+    top = float(speed.max())
+    _criticals(ax, result, name, top)
+    if about == "static":
+        _peaks(ax, result, name, top, factor, unit)
+    ax.set_xlim(0.0, 1.02 * top)
+    if logarithmic:
+        ax.set_yscale("log")
+        ax.set_ylim(1e-4 * factor * largest, 3.0 * factor * largest)
+    elif largest > 0.0:
+        ax.set_ylim(0.0, 1.25 * factor * largest)
+    ax.set_xlabel("speed of the rotor [rad/s]")
+    ax.set_ylabel(f"{what},\n0-peak [{unit}]")
+
+
+def _criticals(ax: Axes, result: RunUp, name: str, top: float) -> None:
+    """Critical speeds of the reference shaft, on the scale of this rotor's speed."""
+    reference = float(np.max(np.abs(result.values[f"{result.reference}.speed"])))
+    ratio = top / reference if reference > 0.0 else 1.0
+    label: str | None = "undamped critical speed"
+    for critical in result.critical_speeds:
+        if critical * ratio <= 1.02 * top:
+            ax.axvline(critical * ratio, color=GREY, linestyle="--", linewidth=0.9, label=label)
+            label = None
+
+
+def _peaks(ax: Axes, result: RunUp, name: str, top: float, factor: float, unit: str) -> None:
+    for speed, amplitude, *_ in result.peaks(name):
+        ax.plot([abs(speed)], [factor * amplitude], "o", color=COLOURS[1], markersize=3.5)
+        near_end = abs(speed) > 0.75 * top
+        options: dict[str, Any] = {"ha": "right" if near_end else "left", "va": "bottom", "fontsize": 8.5, "bbox": PAPER}
+        text = f"{number(factor * amplitude)}\u2009{unit}\nat {number(abs(speed))}\u2009rad/s"
+        ax.annotate(text, (abs(speed), factor * amplitude), xytext=(-5 if near_end else 5, 0), textcoords="offset points", **options)

@@ -1,0 +1,156 @@
+"""Sensors that stand still: constant, stuck or saturated.
+
+Whether a flat stretch is a fault depends on what a channel is.  A command of straight pieces may rest
+at its extremes, and an encoder at rest shows one number; so "saturated" needs a signal that runs into
+the extreme at speed, and "stuck" one that either was noisy before or follows another channel that
+moves on.  A channel that is constant from end to end may be right and is only reported.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hdrive_mbs.records.finding import Finding
+from hdrive_mbs.records.measurement import Measurement
+from hdrive_mbs.signals import FloatArray
+
+if TYPE_CHECKING:
+    from hdrive_mbs.records.record import Record
+
+LONGEST_USUAL = 10.0
+"""A stuck stretch is that many times longer than the 99 % of the other stretches of one value."""
+
+STUCK_SAMPLES, STUCK_SHARE = 50, 0.05
+"""Least length of a stuck stretch: samples, and share of the record."""
+
+FOLLOWS = 0.9
+"""Correlation of the increments of two channels from which one tells what the other should do."""
+
+SHOULD_MOVE = 0.05
+"""Share of its range by which a stuck channel should have moved according to another one."""
+
+CLIPPED_SAMPLES, CLIPPED_SHARE = 5, 0.002
+"""Least length of a flat top, and share of the record on flat tops."""
+
+AT_SPEED = 0.25
+"""Slope just before a flat top, in rms slopes, from which the signal was cut off."""
+
+
+def flat_channels(record: Record) -> Iterator[Finding]:
+    """Constant, stuck and saturated channels."""
+    if len(record) < 2 * STUCK_SAMPLES or not np.all(np.diff(record.times) > 0.0):
+        return
+    for channel in record:
+        if not np.all(np.isfinite(channel.values)):
+            continue
+        if np.ptp(channel.values) == 0.0:
+            yield Finding(
+                kind="constant",
+                channel=channel.name,
+                where="",
+                text=f"constant at {channel.values[0]:.6g} {channel.unit} over the whole record: it excites nothing and shows nothing",
+            )
+        else:
+            runs = _runs(channel.values)
+            yield from _stuck(record, channel, *runs)
+            yield from _saturated(record, channel, *runs)
+
+
+def _runs(values: FloatArray) -> tuple[np.ndarray, np.ndarray]:
+    """Starts and lengths of the stretches of one value."""
+    starts = np.concatenate(([0], np.flatnonzero(np.diff(values)) + 1))
+    return starts, np.diff(np.concatenate((starts, [len(values)])))
+
+
+def _stuck(record: Record, channel: Measurement, starts: np.ndarray, lengths: np.ndarray) -> Iterator[Finding]:
+    longest = int(np.argmax(lengths))
+    length = int(lengths[longest])
+    others = np.delete(lengths, longest)
+    if length < max(STUCK_SAMPLES, STUCK_SHARE * len(record)) or not len(others) or length < LONGEST_USUAL * np.percentile(others, 99):
+        return
+    begin = int(starts[longest])
+    inside = slice(begin, begin + length)
+    outside = np.ones(len(record), dtype=bool)
+    outside[inside] = False
+    reason = ""
+    if _noisy(channel.values[:begin]) or _noisy(channel.values[begin + length :]):
+        reason = "its noise is gone"
+    else:
+        for other in record:
+            if other.name != channel.name and _should_move(channel.values, other.values, inside, outside):
+                reason = f"{other.name}, which it follows elsewhere, moves on"
+                break
+    if reason:
+        yield Finding(
+            kind="stuck",
+            channel=channel.name,
+            where=f"t = {record.times[begin]:.6g} s to {record.times[begin + length - 1]:.6g} s",
+            blocks=True,
+            text=(
+                f"stands at {channel.values[begin]:.6g} {channel.unit} for {length} samples from t = {record.times[begin]:.6g} s while {reason}; "
+                "stuck='drop' leaves the channel out, stuck='keep' keeps it, record.between(start, end) takes a part without"
+            ),
+        )
+
+
+def _noisy(values: FloatArray) -> bool:
+    """Whether the second differences change their sign as often as those of noise (2/3), not as those of a smooth signal."""
+    if len(values) < STUCK_SAMPLES:
+        return False
+    steps = np.diff(values)
+    second = np.diff(steps)
+    moving = np.mean(steps != 0.0) > 0.5
+    return bool(moving and np.mean(second[1:] * second[:-1] < 0.0) > 0.4)
+
+
+def _should_move(values: FloatArray, other: FloatArray, inside: slice, outside: np.ndarray) -> bool:
+    """Whether another channel, by which this one can be told elsewhere, says that this one moves inside."""
+    if not np.all(np.isfinite(other)) or np.ptp(other) == 0.0:
+        return False
+    block = max(1, len(values) // 200)
+    edges = np.arange(0, len(values), block)
+    whole = np.array([outside[a : a + block + 1].all() for a in edges[:-1]], dtype=bool)
+    if whole.sum() < 10:
+        return False
+    mine, theirs = np.diff(values[edges])[whole], np.diff(other[edges])[whole]
+    scale = float(np.sqrt((mine @ mine) * (theirs @ theirs)))
+    if scale == 0.0 or abs(float(mine @ theirs)) < FOLLOWS * scale:
+        return False
+    slope = float(mine @ theirs) / float(theirs @ theirs)
+    return bool(abs(slope) * np.ptp(other[inside]) > SHOULD_MOVE * np.ptp(values))
+
+
+def _saturated(record: Record, channel: Measurement, starts: np.ndarray, lengths: np.ndarray) -> Iterator[Finding]:
+    values = channel.values
+    slopes = np.diff(values)
+    usual = float(np.sqrt(np.mean(slopes**2)))
+    straight = np.mean(np.abs(np.diff(slopes)) <= 1e-9 * np.ptp(values)) > 0.5
+    if straight:  # a command of straight pieces, or an encoder that hardly moves
+        return
+    for extreme, word in ((values.max(), "largest"), (values.min(), "smallest")):
+        flat = np.flatnonzero((values[starts] == extreme) & (lengths >= CLIPPED_SAMPLES))
+        cut = [int(run) for run in flat if _cut_off(values, int(starts[run]), int(lengths[run]), usual)]
+        count = int(lengths[cut].sum()) if cut else 0
+        if count >= max(CLIPPED_SAMPLES, CLIPPED_SHARE * len(values)):
+            begin = int(starts[cut[0]])
+            yield Finding(
+                kind="saturated",
+                channel=channel.name,
+                where=f"t = {record.times[begin]:.6g} s",
+                blocks=True,
+                text=(
+                    f"cut off at its {word} value {extreme:.6g} {channel.unit} in {len(cut)} stretches, {count} samples, first at t = {record.times[begin]:.6g} s; "
+                    "saturated='drop' leaves the channel out, saturated='keep' keeps it (right for a command that is limited)"
+                ),
+            )
+
+
+def _cut_off(values: FloatArray, begin: int, length: int, usual: float) -> bool:
+    """The signal ran into the flat stretch, or out of it, at speed."""
+    before = values[max(0, begin - 3) : begin + 1]
+    after = values[begin + length - 1 : begin + length + 3]
+    speeds = [abs(float(part[-1] - part[0])) / (len(part) - 1) for part in (before, after) if len(part) > 1]
+    return bool(speeds) and max(speeds) > AT_SPEED * usual

@@ -1,0 +1,95 @@
+"""HDF5 files (h5py): every dataset of numbers, with its ``unit`` or ``units`` attribute.
+
+Links to other files, references and objects are not followed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hdrive_mbs.records.formats.file_format import Column, Contents, Format, Wanted, broken, check_width, named_unit, package, real_numbers
+from hdrive_mbs.records.si_units import is_unit
+
+DEEPEST = 12
+"""Groups inside groups that are followed."""
+
+LARGEST = 2**31
+"""Bytes of one dataset; a few bytes of file can claim any size."""
+
+SIGNATURE = b"\x89HDF\r\n\x1a\n"
+
+
+def read(path: Path, wanted: Wanted) -> Contents:
+    """All datasets of real numbers, named by their path without the leading slash."""
+    h5py = package("h5py", "HDF5 files", path)
+    skipped: dict[str, str] = {}
+    columns: list[Column] = []
+    try:
+        with h5py.File(path, "r") as file:
+            for parts, data in datasets(file, skipped):
+                last, unit = named_unit(parts[-1], is_unit)
+                name = "/".join((*parts[:-1], last))
+                if not wanted(name):
+                    continue
+                if data.dtype.kind not in "biuf" or not data.shape:
+                    skipped[name] = "a single value" if not data.shape else real_numbers(np.empty(1, data.dtype))
+                    continue
+                values = np.squeeze(np.asarray(data))
+                problem = real_numbers(values) if values.ndim else "a single number"
+                if problem:
+                    skipped[name] = problem
+                    continue
+                unit = attribute_text(data, "unit") or attribute_text(data, "units") or unit
+                columns.append(Column(name=name, unit=unit, values=values, group=parts[:-1]))
+    except Exception as error:  # h5py raises many kinds for a damaged file
+        raise broken(path, "HDF5", error) from error
+    check_width(path, columns)
+    return Contents(columns=tuple(columns), skipped=skipped)
+
+
+def datasets(group: Any, skipped: dict[str, str], parts: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Path and dataset of all that lies in the file itself, each once."""
+    import h5py
+
+    stack = [(parts, group)]
+    seen = {group.id.__hash__()}
+    while stack:
+        above, inside = stack.pop()
+        for key in inside:
+            path = (*above, str(key))
+            name = "/".join(path)
+            if not isinstance(inside.get(key, getlink=True), h5py.HardLink):
+                skipped[name] = "a link, which is not followed"
+                continue
+            item = inside[key]
+            if isinstance(item, h5py.Dataset):
+                if item.external is not None or item.is_virtual:
+                    skipped[name] = "a dataset that lies in another file, which is not opened"
+                elif item.dtype.kind != "O" and item.dtype.itemsize * max(item.size or 0, 1) > LARGEST:
+                    skipped[name] = f"an array of shape {item.shape}, over {LARGEST / 2**30:g} GiB"
+                else:
+                    yield path, item
+            elif isinstance(item, h5py.Group):
+                if len(path) >= DEEPEST or hash(item.id) in seen:
+                    skipped[name] = "a group inside itself" if hash(item.id) in seen else f"groups more than {DEEPEST} deep"
+                else:
+                    seen.add(hash(item.id))
+                    stack.append((path, item))
+
+
+def attribute_text(item: Any, name: str) -> str | None:
+    """A text attribute; None where it is missing or no text."""
+    if name not in item.attrs:
+        return None
+    value = item.attrs[name]
+    value = value.item() if isinstance(value, np.ndarray) and value.size == 1 else value
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "replace")
+    return value if isinstance(value, str) else None
+
+
+FORMAT = Format(name="HDF5", suffixes=(".h5", ".hdf5", ".hdf"), recognises=lambda head: head.startswith(SIGNATURE), read=read)

@@ -1,0 +1,63 @@
+"""Parquet tables (pyarrow); the unit stands in the metadata of a field, or in its name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hdrive_mbs.records.formats.file_format import Column, Contents, Format, Wanted, broken, check_width, named_unit, package
+from hdrive_mbs.records.si_units import is_unit
+
+_STEPS = {"s": "s", "ms": "ms", "us": "us", "ns": "ns"}
+
+
+def read(path: Path, wanted: Wanted) -> Contents:
+    """Columns of numbers, times and durations; others are told of."""
+    parquet = package("pyarrow.parquet", "Parquet files", path)
+    types = package("pyarrow.types", "Parquet files", path)
+    columns: list[Column] = []
+    skipped: dict[str, str] = {}
+    try:
+        with parquet.ParquetFile(path) as file:
+            schema = file.schema_arrow
+            check_width(path, schema.names)
+            repeated = sorted({name for name in schema.names if schema.names.count(name) > 1})
+            for name in repeated:
+                skipped[name] = "a name that occurs more than once"
+            for field in schema:
+                heading, unit = named_unit(field.name, is_unit)
+                if field.name in repeated or not wanted(heading):
+                    continue
+                metadata = {key.decode().lower(): value.decode() for key, value in (field.metadata or {}).items()}
+                unit = metadata.get("unit", metadata.get("units", unit))
+                if types.is_timestamp(field.type) or types.is_duration(field.type):
+                    unit = _STEPS[field.type.unit]
+                elif not (
+                    types.is_integer(field.type)
+                    or types.is_floating(field.type)
+                    or types.is_decimal(field.type)
+                    or types.is_boolean(field.type)
+                ):
+                    skipped[heading] = f"values of type {field.type}"
+                    continue
+                columns.append(Column(name=heading, unit=unit, values=_numbers(file.read(columns=[field.name]), types)))
+    except Exception as error:  # pyarrow raises kinds of its own
+        if type(error).__module__.startswith("hdrive_mbs"):
+            raise
+        raise broken(path, "Parquet", error) from error
+    return Contents(columns=tuple(columns), skipped=skipped)
+
+
+def _numbers(table: Any, types: Any) -> np.ndarray:
+    """The only column of a table; what is missing becomes NaN."""
+    column = table.column(0)
+    if types.is_timestamp(column.type) or types.is_duration(column.type):
+        column = column.cast("int64")
+    if types.is_integer(column.type) and column.null_count == 0:
+        return np.asarray(column.to_numpy())
+    return np.asarray(column.cast("float64").to_numpy(), dtype=float)
+
+
+FORMAT = Format(name="Parquet", suffixes=(".parquet", ".pq"), recognises=lambda head: head[:4] == b"PAR1", read=read)

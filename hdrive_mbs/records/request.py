@@ -1,0 +1,97 @@
+"""What a reader is asked for: which channels of a file, in which units, over which time."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from hdrive_mbs.errors import FileFormatError, unknown_place
+from hdrive_mbs.records.formats.file_format import Column, Contents, format_of
+
+TIMES = frozenset({"t", "time", "times", "zeit", "timestamp", "timestamps", "time_stamp", "elapsed_time", "time_s", "sec", "seconds"})
+"""Names of columns that are taken for the time, in lower case."""
+
+Channels = Mapping[str, str | None] | Sequence[str]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """What the caller asked for, of one file."""
+
+    path: Path
+    channels: Mapping[str, str | None] | None
+    units: Mapping[str, str]
+    time: str | float | None
+
+    @classmethod
+    def of(cls, path: Path, channels: Channels | None, units: Mapping[str, str], time: str | float | None) -> Request:
+        if isinstance(channels, str):
+            channels = [channels]
+        chosen = None if channels is None else dict(channels) if isinstance(channels, Mapping) else dict.fromkeys(channels)
+        return cls(path=path, channels=chosen, units=units, time=time)
+
+    def wants(self, name: str) -> bool:
+        """Whether a column is needed: chosen, or part of a chosen matrix, or a time."""
+        if self.channels is None or name == self.time or is_time(name):
+            return True
+        return any(fits(pattern, name) or fits(re.sub(r"\[\d+\]$", "", pattern), name) for pattern in self.channels)
+
+    def selects(self, name: str) -> bool:
+        """Whether a channel is chosen."""
+        return self.channels is None or any(fits(pattern, name) or fits(pattern, base_name(name)) for pattern in self.channels)
+
+    def quantity(self, name: str) -> str | None:
+        """The channel of the scene for a channel, if the caller said."""
+        if self.channels is None:
+            return None
+        exact = self.channels.get(name)
+        if exact is not None:
+            return exact
+        return next((quantity for pattern, quantity in self.channels.items() if quantity is not None and fits(pattern, name)), None)
+
+    def unit(self, name: str, given: str | None) -> str | None:
+        """The unit of a channel: said by the caller, else by the file."""
+        for key in (name, base_name(name)):
+            if key in self.units:
+                return self.units[key]
+        patterns = (
+            unit for pattern, unit in self.units.items() if "*" in pattern and (fits(pattern, name) or fits(pattern, base_name(name)))
+        )
+        return next(patterns, given)
+
+    def check_selected(self, found: Iterable[Column], contents: Contents) -> None:
+        """Raise PlaceError for a chosen channel that the file lacks, FileFormatError for one that cannot be read."""
+        names = [column.name for column in found]
+        for pattern in self.channels or ():
+            if any(fits(pattern, name) or fits(pattern, base_name(name)) for name in names):
+                continue
+            reason = contents.skipped.get(pattern)
+            if reason is not None:
+                raise FileFormatError(f"{self.path}: {pattern!r} cannot be read as a channel: it is {reason}.")
+            raise unknown_place("channel", pattern, self._all_names(), str(self.path))
+
+    def _all_names(self) -> list[str]:
+        everything = format_of(self.path).read(self.path, lambda name: True)
+        names = sorted(column.name for column in everything.columns)
+        return names if len(names) <= 60 else [*names[:60], f"... ({len(names)} in all)"]
+
+
+def fits(pattern: str, name: str) -> bool:
+    if pattern == name:
+        return True
+    return "*" in pattern and re.fullmatch(".*?".join(re.escape(part) for part in pattern.split("*")), name, re.S) is not None
+
+
+def base_name(name: str) -> str:
+    return re.sub(r"\[\d+\]$", "", name)
+
+
+def is_time(name: str) -> bool:
+    return re.split(r"[./]", name)[-1].strip().lower().replace(" ", "_") in TIMES
+
+
+def first_names(names: Iterable[str]) -> str:
+    listed = list(names)
+    return ", ".join(listed[:8]) + (f", ... ({len(listed)} in all)" if len(listed) > 8 else "")
