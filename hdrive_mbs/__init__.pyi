@@ -1,5 +1,7 @@
 """What ``import hdrive_mbs`` offers, for type checkers and editors (the package imports lazily)."""
 
+from hdrive_mbs.analysis.bearing_models import BearingModelWarning as BearingModelWarning
+from hdrive_mbs.analysis.bearing_models import with_bearings as with_bearings
 from hdrive_mbs.analysis.campbell import Campbell as Campbell
 from hdrive_mbs.analysis.campbell import torsional_campbell as torsional_campbell
 from hdrive_mbs.analysis.critical_map import CriticalSpeedMap as CriticalSpeedMap
@@ -38,12 +40,12 @@ from hdrive_mbs.analysis.torsion import TorsionCurve as TorsionCurve
 from hdrive_mbs.analysis.torsion import torsion as torsion
 from hdrive_mbs.analysis.unbalance_response import UnbalanceResponse as UnbalanceResponse
 from hdrive_mbs.analysis.unbalance_response import unbalance_response as unbalance_response
+from hdrive_mbs.analysis.waterfall import Waterfall as Waterfall
+from hdrive_mbs.analysis.waterfall import waterfall as waterfall
 from hdrive_mbs.analysis.whirl_campbell import WhirlCampbell as WhirlCampbell
 from hdrive_mbs.analysis.whirl_campbell import campbell as campbell
 from hdrive_mbs.analysis.whirl_modes import WhirlModes as WhirlModes
 from hdrive_mbs.analysis.whirl_modes import whirl_modes as whirl_modes
-from hdrive_mbs.analysis.waterfall import Waterfall as Waterfall
-from hdrive_mbs.analysis.waterfall import waterfall as waterfall
 from hdrive_mbs.bearings.ball import BallBearing as BallBearing
 from hdrive_mbs.bearings.friction import WithFriction as WithFriction
 from hdrive_mbs.bearings.journal import JournalBearing as JournalBearing
@@ -60,6 +62,7 @@ from hdrive_mbs.components.flexible_coupling import FlexibleCoupling as Flexible
 from hdrive_mbs.components.gravity import Gravity as Gravity
 from hdrive_mbs.components.harmonic_drive import HarmonicDrive as HarmonicDrive
 from hdrive_mbs.components.housing import Housing as Housing
+from hdrive_mbs.components.improved_section import ImprovedSection as ImprovedSection
 from hdrive_mbs.components.inertia import Inertia as Inertia
 from hdrive_mbs.components.load import Load as Load
 from hdrive_mbs.components.motor import Motor as Motor
@@ -69,6 +72,7 @@ from hdrive_mbs.components.rotor import Rotor as Rotor
 from hdrive_mbs.components.sensor import Sensor as Sensor
 from hdrive_mbs.components.shaft import Shaft as Shaft
 from hdrive_mbs.components.shaft_section import ShaftSection as ShaftSection
+from hdrive_mbs.components.simplified_section import SimplifiedSection as SimplifiedSection
 from hdrive_mbs.components.speed_controller import SpeedController as SpeedController
 from hdrive_mbs.components.tooth_errors import tooth_errors as tooth_errors
 from hdrive_mbs.effects.bouc_wen_hysteresis import BoucWenHysteresis as BoucWenHysteresis
@@ -101,6 +105,7 @@ from hdrive_mbs.errors import KeywordError as KeywordError
 from hdrive_mbs.errors import LawError as LawError
 from hdrive_mbs.errors import ParameterError as ParameterError
 from hdrive_mbs.errors import PlaceError as PlaceError
+from hdrive_mbs.errors import RecordError as RecordError
 from hdrive_mbs.errors import SceneError as SceneError
 from hdrive_mbs.errors import SimulationError as SimulationError
 from hdrive_mbs.errors import UnitError as UnitError
@@ -138,6 +143,18 @@ from hdrive_mbs.quantities import option as option
 from hdrive_mbs.quantities import parameter as parameter
 from hdrive_mbs.quantities import rpm as rpm
 from hdrive_mbs.quantities import table as table
+from hdrive_mbs.records.alignment import ClockMatch as ClockMatch
+from hdrive_mbs.records.alignment import aligned as aligned
+from hdrive_mbs.records.alignment import clock_match as clock_match
+from hdrive_mbs.records.collection import Records as Records
+from hdrive_mbs.records.finding import Finding as Finding
+from hdrive_mbs.records.measurement import Measurement as Measurement
+from hdrive_mbs.records.reading import read_columns as read_columns
+from hdrive_mbs.records.reading import read_record as read_record
+from hdrive_mbs.records.reading import read_records as read_records
+from hdrive_mbs.records.record import Record as Record
+from hdrive_mbs.records.repair import repaired as repaired
+from hdrive_mbs.records.splitting import Split as Split
 from hdrive_mbs.rotor_line_builder import ShaftMaterial as ShaftMaterial
 from hdrive_mbs.rotor_line_builder import rotor_line as rotor_line
 from hdrive_mbs.scene import Scene as Scene

@@ -2,7 +2,8 @@
 
 Friswell, Penny, Garvey, Lees, Dynamics of Rotating Machines (2010), Example 5.9.9: shaft of 1.5 m x 50 mm, disc of 350 mm
 x 70 mm at its end, bearings at 0 and 1.0 m with 10 MN/m; steel with E = 211 GPa, G = 81.2 GPa, 7810 kg/m^3.  Book values
-with 6 elements at 4000 rpm: 76.19, 103.91, 565.99, 647.75, 1174.2 rad/s.  Damping, unbalance, axial hold and drive are ours.
+with 6 elements at 4000 rpm, among them: 76.19, 103.91, 565.99, 647.75, 1174.2 rad/s.  Damping, unbalance, axial hold and
+drive are ours.
 
     from models.overhung import build
     response = hm.simulate(build(), 2.0, solver=hm.Trapezoidal(step=2e-4, newton_tolerance=1e-6))

@@ -10,6 +10,7 @@ bearing B at 0.56 and rotor 2 at 0.63 m.  Bearing A locates the shaft axially (1
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -85,7 +86,10 @@ def build(
         "rotor_2": hm.Rotor(mass=3.0, polar_inertia=0.00735, transverse_inertia=0.00383),
     }
     chain = ["drive", names[0]]
-    for k, (left, right) in enumerate(zip(names[:-1], names[1:], strict=True), start=1):
+    for k, (left, right) in enumerate(itertools.pairwise(names), start=1):
         parts[f"section_{k}"] = _section(POSITIONS[right] - POSITIONS[left], diameter, numbers["shaft_damping"])
         chain += [f"section_{k}", right]
-    return hm.Scene(name="two rotor line", parts=parts, connections=[tuple(chain)])
+    full = hm.Scene(name="two rotor line", parts=parts, connections=[tuple(chain)])
+    if bearing == "full":
+        return full
+    return hm.with_bearings(full, bearing, ("bearing_b",) if bearing == "merged" else None, highest_speed=final_speed)

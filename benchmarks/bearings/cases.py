@@ -14,6 +14,9 @@ FULL, MERGED, SIMPLIFIED, IMPROVED = "full", "merged", "simplified", "improved"
 MODELS = (FULL, MERGED, SIMPLIFIED, IMPROVED)
 BEARINGS = ("bearing_a", "bearing_b")
 
+FINAL = 1000.0
+"""Speed at which the run-up ends [rad/s]."""
+
 DURATION = 2.5
 """Of the run-up and the time at the final speed [s], as in the paper."""
 
@@ -25,7 +28,7 @@ def with_model(full: hm.Scene, model: str) -> tuple[hm.Scene, list[str]]:
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        scene = with_bearings(full, model, ["bearing_b"] if model == MERGED else None)
+        scene = with_bearings(full, model, ["bearing_b"] if model == MERGED else None, highest_speed=FINAL)
     return scene, [str(item.message) for item in caught if issubclass(item.category, BearingModelWarning)]
 
 

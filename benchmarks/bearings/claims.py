@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from benchmarks.bearings.cases import FULL, IMPROVED, MERGED, PAPER, SIMPLIFIED, Case
+from benchmarks.bearings.cases import FINAL, FULL, IMPROVED, MERGED, PAPER, SIMPLIFIED, Case
 from benchmarks.bearings.findings import Findings
 from benchmarks.bearings.precision import ADAPTIVE, FIXED, IMPLICIT, STEPS, TARGET, TOLERANCES
 from benchmarks.bearings.run_up import ROTORS
-from benchmarks.bearings.steady import ABOVE, BELOW, BETWEEN, FINAL
+from benchmarks.bearings.steady import ABOVE, BELOW, BETWEEN
 from benchmarks.bearings.sweep import CHEAPER, valid_from
 from benchmarks.stiffness_laws.claim import Claim, judged
 from hdrive_mbs.analysis.bearing_models import LIMITS
@@ -58,11 +58,15 @@ def claims(found: Findings) -> list[Claim]:
 def _criticals(found: Findings) -> Claim:
     texts, verdicts = [], {}
     for case in _cases(found):
-        deviations = found.steady_deviation(case, SIMPLIFIED)["critical_speeds"]
+        steady = found.steady_deviation(case, SIMPLIFIED)
+        deviations, damped = steady["critical_speeds"], steady["damped_critical_speeds"]
         at_peak = found.peak_speed_deviation(case, SIMPLIFIED)
         listed = ", ".join(percent(value) for value in deviations)
-        texts.append(f"{case.name}: {listed} (undamped, up to {FINAL:g} rad/s); speed of the run-up peak {percent(at_peak)}")
-        verdicts[case.name] = max(map(abs, (*deviations, at_peak))) <= CLOSE
+        with_damping = ", ".join(percent(value) for value in damped)
+        texts.append(
+            f"{case.name}: {listed} undamped, {with_damping} damped, up to {FINAL:g} rad/s; speed of the run-up peak {percent(at_peak)}"
+        )
+        verdicts[case.name] = max(map(abs, (*deviations, *damped, at_peak))) <= CLOSE
     return Claim("section 6", "the critical speeds are close to each other (we ask for 5 %)", "; ".join(texts), _where(verdicts))
 
 
@@ -159,7 +163,7 @@ def _times(found: Findings) -> list[Claim]:
     made = []
     for case in _cases(found):
         texts, ratios = [], []
-        for kind, value in ((ADAPTIVE, TOLERANCES[0]), (ADAPTIVE, TOLERANCES[-1]), (IMPLICIT, STEPS[2])):
+        for kind, value in ((ADAPTIVE, TOLERANCES[-1]), (ADAPTIVE, TOLERANCES[0]), (IMPLICIT, STEPS[2])):
             same = found.same_setting(case, SIMPLIFIED, kind, value)
             if math.isfinite(same["seconds"]):
                 texts.append(f"{kind}, {value:g}: {same['seconds']:.2f}x the time, {same['steps']:.2f}x the steps")
@@ -260,7 +264,8 @@ def aims(found: Findings) -> list[Claim]:
     """Of the improved model, and of run time."""
     made = []
     for case in found.runs:
-        criticals = max(map(abs, found.steady_deviation(case, IMPROVED)["critical_speeds"]))
+        steady = found.steady_deviation(case, IMPROVED)
+        undamped, damped = (max(map(abs, steady[key])) for key in ("critical_speeds", "damped_critical_speeds"))
         peaks = max(map(abs, found.peak_deviation(case, IMPROVED).values()))
         ratio = found.time_ratio(case, IMPROVED)
         solvers = ", ".join(f"{model}: {found.runs[case][model].best()[0]}" for model in (IMPROVED, FULL))
@@ -268,10 +273,11 @@ def aims(found: Findings) -> list[Claim]:
             Claim(
                 case.name,
                 "improved: critical speeds within 0.05 %, peaks of the run-up within 0.5 %, at most 50 % of the time of the full model",
-                f"{100.0 * criticals:.4f} %, {100.0 * peaks:.4f} %, {100.0 * ratio:.0f} % ({solvers})",
-                _aims_verdict(criticals <= 5e-4, peaks <= 5e-3, ratio <= 0.5),
+                f"{100.0 * undamped:.4f} % (with damping {100.0 * damped:.4f} %), {100.0 * peaks:.4f} %, {100.0 * ratio:.0f} % ({solvers})",
+                _aims_verdict(max(undamped, damped) <= 5e-4, peaks <= 5e-3, ratio <= 0.5),
             )
         )
+    made.append(_defaults(found))
     made += [_warned(found, model) for model in CHEAPER]
     case = next(iter(found.runs))
     for model, limit in ((FULL, 1.0), (SIMPLIFIED, 0.5), (IMPROVED, 0.5)):
@@ -289,29 +295,35 @@ def aims(found: Findings) -> list[Claim]:
     return made
 
 
+def _defaults(found: Findings) -> Claim:
+    every = [(case.name, model, item["error"]) for case, of in found.defaults.items() for model, item in of.items()]
+    worst = max(every, key=lambda row: row[2])
+    return Claim(
+        "all lines",
+        f"run_up chooses a step that keeps the peaks within the {100.0 * TARGET:g} % it is asked for, if not told otherwise",
+        f"largest error {100.0 * worst[2]:.3f} % ({worst[0]}, {worst[1]}), smallest {100.0 * min(row[2] for row in every):.3f} %",
+        "reached" if worst[2] <= TARGET else "missed",
+    )
+
+
 def _warned(found: Findings, model: str) -> Claim:
     """Whether a warning came exactly where a model of the maps, or of moved damping, is off."""
     frequency, damping = LIMITS[model]
     off, good = [], []
     cells = found.swept_cells(model)
     for cell in cells:
-        sizes = cell["critical_speeds"] / frequency, max_size(cell[rotor] for rotor in ROTORS) / damping
+        sizes = cell["critical_speeds"] / frequency, abs(cell["largest"]) / damping
         if max(sizes) > 1.0:
             off.append(bool(cell["warned"]))
         elif max(sizes) < 0.5:
             good.append(bool(cell["warned"]))
     return Claim(
         "sweeps",
-        f"{model}: with_bearings warns where critical speeds are off by more than {100.0 * frequency:g} % or the first peak by "
+        f"{model}: with_bearings warns where critical speeds are off by more than {100.0 * frequency:g} % or the larger first peak by "
         f"{100.0 * damping:g} %, and does not where both are within half of that",
         f"it warned in {sum(off)} of {len(off)} cases that are off, and in {sum(good)} of {len(good)} that are not; {len(cells)} in all",
         "missed: some go unnoticed" if not all(off) else "reached, with false alarms" if any(good) else "reached",
     )
-
-
-def max_size(values: Iterable[float]) -> float:
-    """The largest size of those that are numbers."""
-    return max((abs(value) for value in values if math.isfinite(value)), default=0.0)
 
 
 def _aims_verdict(*reached: bool) -> str:

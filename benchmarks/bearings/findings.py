@@ -24,6 +24,7 @@ SCIPY_NAMES = {"M-REF": "m_ref full", "M-REF2": "m_ref2 full", "cubic bearing": 
 class Findings:
     """Case -> model -> what was found; ``run_ups`` only for the two cases of the paper.
 
+    defaults : what run_up gives without any setting
     without_tilt : case -> deviations of the simplified model without tilt stiffness, tilt damping and tilt inertia
     """
 
@@ -32,6 +33,7 @@ class Findings:
     steady: Mapping[Case, Mapping[str, Steady]]
     run_ups: Mapping[Case, Mapping[str, Any]]
     without_tilt: Mapping[Case, Mapping[str, Any]]
+    defaults: Mapping[Case, Mapping[str, Mapping[str, Any]]]
     swept: Mapping[str, Any]
 
     def peak_deviation(self, case: Case, model: str) -> dict[str, float]:
@@ -102,6 +104,8 @@ class Findings:
                     "seconds_per_simulated_second": seconds / self.duration,
                     "time_over_full": self.time_ratio(case, model),
                     "critical_speeds": list(self.steady[case][model].criticals),
+                    "damped_critical_speeds": list(self.steady[case][model].damped_criticals),
+                    "run_up_as_it_comes": self.defaults[case][model],
                     "steady": self.steady_deviation(case, model),
                 }
             cases[case.name] = {"what": case.what, "models": models}

@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from benchmarks.bearings.cases import FULL, IMPROVED, SIMPLIFIED, Case
+from benchmarks.bearings.cases import FINAL, FULL, IMPROVED, PAPER, SIMPLIFIED, Case
 from benchmarks.bearings.figures import LOOKS
 from benchmarks.bearings.precision import ADAPTIVE, FIXED, IMPLICIT, TARGET, Runs
 from benchmarks.bearings.run_up import ROTORS
-from benchmarks.bearings.steady import FINAL, Steady
+from benchmarks.bearings.steady import Steady
 from benchmarks.bearings.sweep import CHEAPER
 from hdrive_mbs.plots.look import COLOURS, GREY, house_look, legend_above, new_figure
 
@@ -29,7 +29,8 @@ def pictures(
     with house_look():
         return {
             "error_against_time": _precision(runs, duration),
-            "steady_response": _responses(responses),
+            "campbell": _campbells({case: of for case, of in responses.items() if case in PAPER}),
+            "steady_response": _responses({case: of for case, of in responses.items() if case in PAPER}),
             "validity_critical_speeds": _validity(swept["maps"], "critical_speeds"),
             "validity_peaks": _validity(swept["maps"], "peaks"),
             "where_the_damping_sits": _damping(swept["damping"]),
@@ -89,7 +90,30 @@ def _responses(responses: Mapping[Case, Mapping[str, Steady]]) -> Figure:
         grid[0, column].set_title(case.name, pad=20)
         legend_above(grid[0, column])
         grid[-1, column].set_xlabel("speed [rad/s]")
-    title = "Steady response to unbalance; dotted: critical speeds of the full model; grey: beyond the final speed of the run-up"
+    title = "Steady response to unbalance; dotted: undamped critical speeds; grey: beyond the run-up"
+    figure.suptitle(title, x=0.01, ha="left")
+    return figure
+
+
+def _campbells(responses: Mapping[Case, Mapping[str, Steady]]) -> Figure:
+    figure = new_figure(5.6 * len(responses), 5.0)
+    axes = figure.subplots(1, len(responses), squeeze=False, sharey=True)[0]
+    for ax, (case, of) in zip(axes, responses.items(), strict=True):
+        for model in (FULL, SIMPLIFIED, IMPROVED):
+            result = of[model].campbell
+            for k in range(result.frequencies.shape[1]):
+                ax.plot(result.speeds, result.frequencies[:, k], label=model if k == 0 else None, **LOOKS[model])
+            met = np.array(of[model].damped_criticals)
+            ax.plot(met, met, "o", color=LOOKS[model]["color"], markersize=5, markerfacecolor="white", markeredgewidth=1.4, zorder=5)
+        top = float(of[FULL].campbell.speeds[-1])
+        ax.plot([0.0, top], [0.0, top], color=GREY, linestyle="--", linewidth=1.0)
+        ax.set_xlim(0.0, top)
+        ax.set_ylim(0.0, 1.2 * top)
+        ax.set_title(case.name, pad=20)
+        ax.set_xlabel("speed [rad/s]")
+        legend_above(ax)
+    axes[0].set_ylabel("damped frequency [rad/s]")
+    title = "Campbell diagrams; rings: forward whirl meets the speed (dashed)"
     figure.suptitle(title, x=0.01, ha="left")
     return figure
 

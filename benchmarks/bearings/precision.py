@@ -27,10 +27,13 @@ SOLVERS = (IMPLICIT, FIXED, ADAPTIVE)
 TARGET = 1e-3
 """Relative error of the peaks at which times are compared."""
 
-STEPS = (4e-4, 2e-4, 1e-4, 5e-5, 2.5e-5)
-TOLERANCES = (1e-4, 1e-7, 1e-10)
-SHARES = (0.9, 0.45)
+STEPS = (2.5e-5, 5e-5, 1e-4, 2e-4, 4e-4)
+TOLERANCES = (1e-10, 1e-7, 1e-4)
+SHARES = (0.45, 0.9)
 """Of the longest stable step."""
+
+SAMPLES = 40_000
+"""Of a history that is kept for the figures."""
 
 LONG = 1.5
 """A run that takes longer than this [s of CPU time] is not repeated."""
@@ -71,11 +74,12 @@ class Runs:
         scene = case.scene(model)
         values = eigenvalues(scene)
         limit = longest_step(values)
-        chosen = [Setting(IMPLICIT, h, hm.Trapezoidal(step=h, newton_tolerance=1e-5)) for h in (STEPS[1:3] if quick else STEPS)]
-        chosen += [Setting(FIXED, share * limit, hm.RungeKutta4(step=share * limit)) for share in (SHARES[:1] if quick else SHARES)]
+        # the run with the fewest samples last: the engine keeps those of the last one
+        chosen = [Setting(FIXED, share * limit, hm.RungeKutta4(step=share * limit)) for share in (SHARES[-1:] if quick else SHARES)]
         if case in PAPER and not quick:
             pairs = [(tol, hm.DormandPrince(relative_tolerance=tol, absolute_tolerance=1e-2 * tol)) for tol in TOLERANCES]
             chosen += [Setting(ADAPTIVE, tol, solver) for tol, solver in pairs]
+        chosen += [Setting(IMPLICIT, h, hm.Trapezoidal(step=h, newton_tolerance=1e-5)) for h in (STEPS[-3:-1] if quick else STEPS)]
         return cls(case, model, scene, assemble(scene.network()), float(abs(values).max()), limit, chosen)
 
     def due(self, setting: Setting) -> bool:
@@ -93,8 +97,8 @@ class Runs:
         if setting not in self.peaks:
             self.steps[setting] = run.steps, run.rejected
             self.peaks[setting] = {rotor: run.peak(rotor) for rotor in ROTORS}
-            if setting == self._finest(FIXED):
-                self.history = run
+            if setting == self._finest(FIXED) and self.case in PAPER:
+                self.history = run.thinned(SAMPLES)
 
     def _finest(self, kind: str) -> Setting:
         return min((s for s in self.settings if s.kind == kind), key=lambda s: s.value)

@@ -38,6 +38,8 @@ def report(found: Findings, numbers: Mapping[str, Any], claims: Sequence[Claim],
         f"CPU time at an error of {100.0 * TARGET:g} % of the model's own converged peaks, read from a line through log(time) over "
         "log(error). Where every stable run of an explicit solver is better than that, it is the fastest of them.",
         _times(found),
+        "run_up as it comes, without a setting; CPU time of the whole call with all channels and peaks:",
+        _defaults(found),
         "## All runs",
         f"{IMPLICIT}: trapezoidal rule, setting: step; {FIXED}: classical Runge-Kutta, setting: step, from 0.9 and 0.45 of the longest "
         f"stable one; {ADAPTIVE}: Dormand-Prince, setting: relative tolerance (counted against the largest coordinate, the spin angle). "
@@ -121,6 +123,14 @@ def _times(found: Findings) -> str:
             ))  # fmt: skip
     head = ("line", "model", "coordinates", "fastest eigenvalue [1/s]", "longest explicit step [us]", *(f"{s} [s]" for s in SOLVERS))
     return table((*head, "best over simulated time", "over full"), rows)
+
+
+def _defaults(found: Findings) -> str:
+    rows = []
+    for case, of in found.defaults.items():
+        for model, item in of.items():
+            rows.append((case.name, model, item["solver"], f"{100.0 * item['error']:.3f} %", f"{item['seconds']:.2f}"))
+    return table(("line", "model", "solver", "error of the peaks", "CPU [s]"), rows)
 
 
 def _seconds(value: float) -> str:

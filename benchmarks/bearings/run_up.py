@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -73,14 +73,30 @@ class RunUp:
         top = -b / (2.0 * a) if a < 0.0 else 0.0
         return Peak(float(c + b * top + a * top * top), float(np.interp(top, t, speed[k - 1 : k + 2])))
 
+    def thinned(self, samples: int) -> RunUp:
+        """Every k-th sample, so that about so many are left."""
+        k = max(1, len(self.times) // samples)
+
+        def thin(values: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+            return {name: value[::k].copy() for name, value in values.items()}
+
+        return replace(
+            self,
+            times=self.times[::k].copy(),
+            angle=thin(self.angle),
+            speed=thin(self.speed),
+            lateral={rotor: thin(values) for rotor, values in self.lateral.items()},
+            drive_speed=self.drive_speed[::k].copy(),
+        )
+
     def over_speed(self, values: FloatArray, rotor: str, speeds: FloatArray) -> FloatArray:
         """A history at speeds of the rotor [rad/s], while it speeds up; NaN beyond the speed it reaches.
 
         Torsional vibration makes the speed go back and forth a little: the last passage counts.
         """
-        highest = np.minimum.accumulate(self.speed[rotor][::-1])[::-1]  # rising, at or below the speed
-        rising = np.concatenate(([True], np.diff(highest) > 0.0))
-        return np.interp(speeds, highest[rising], values[rising], left=np.nan, right=np.nan)
+        lowest = np.minimum.accumulate(self.speed[rotor][::-1])[::-1]  # from each moment on
+        last = np.concatenate((np.diff(lowest) > 0.0, [True]))
+        return np.interp(speeds, lowest[last], values[last], left=np.nan, right=np.nan)
 
 
 def run_up(scene: hm.Scene, assembly: Assembly, duration: float, solver: hm.Solver) -> RunUp:

@@ -11,20 +11,21 @@ import numpy as np
 import numpy.typing as npt
 
 import hdrive_mbs as hm
+from benchmarks.bearings.cases import FINAL
 from benchmarks.bearings.run_up import ROTORS
 from hdrive_mbs.analysis.line_matrices import LineMatrices
 from hdrive_mbs.analysis.response_peaks import ResponsePeak
 from hdrive_mbs.analysis.rotor_point import rotor_point
 from hdrive_mbs.analysis.synchronous_whirl import critical_speeds
 from hdrive_mbs.analysis.unbalance_response import unbalance_response
+from hdrive_mbs.analysis.whirl_campbell import WhirlCampbell, campbell
 
 FloatArray = npt.NDArray[np.float64]
 
-FINAL = 1000.0
-"""Speed at which the run-up ends [rad/s]."""
-
 NEAR = 0.15
 """A peak belongs to a critical speed within this share of it."""
+
+CAMPBELL_SPEEDS = np.linspace(0.0, 1300.0, 53)
 
 OFF = 0.15
 """A speed counts as away from a critical speed by more than this share of it."""
@@ -36,15 +37,23 @@ BELOW, BETWEEN, ABOVE = "below the criticals", "between them", "above them"
 class Steady:
     """One model of one line.
 
-    criticals : undamped critical speeds of unbalance [rad/s], ascending
+    criticals : undamped critical speeds that unbalance excites [rad/s], ascending
+    campbell : damped frequencies over speed
     speeds : rad/s;  amplitude : rotor -> distance of the geometric centre from the axis [m], 0-peak
     peaks : rotor -> maxima over the speed
     """
 
     criticals: tuple[float, ...]
+    campbell: WhirlCampbell
     speeds: FloatArray
     amplitude: Mapping[str, FloatArray]
     peaks: Mapping[str, tuple[ResponsePeak, ...]]
+
+    @property
+    def damped_criticals(self) -> tuple[float, ...]:
+        """Where forward whirl meets the speed, with damping [rad/s]."""
+        forward = [whirl == "forward" for whirl in self.campbell.critical_whirl]
+        return tuple(self.campbell.critical_speeds[forward].tolist())
 
     def peak(self, rotor: str, k: int) -> ResponsePeak | None:
         """The highest maximum of a rotor near critical speed number k (0 is the first)."""
@@ -67,6 +76,7 @@ def steady(scene: hm.Scene, speeds: FloatArray) -> Steady:
     response = unbalance_response(scene, speeds, progress=False)
     return Steady(
         criticals=forward_criticals(scene),
+        campbell=campbell(scene, CAMPBELL_SPEEDS, progress=False),
         speeds=speeds,
         amplitude={rotor: response[rotor].major for rotor in ROTORS},
         peaks={rotor: tuple(peak for peak in response.peaks if peak.place == rotor) for rotor in ROTORS},
@@ -106,6 +116,7 @@ def against(model: Steady, full: Steady) -> dict[str, Any]:
     last = {rotor: float(np.interp(FINAL, model.speeds, model.amplitude[rotor] / full.amplitude[rotor])) - 1.0 for rotor in ROTORS}
     return {
         "critical_speeds": [model.criticals[k] / full.criticals[k] - 1.0 for k in range(count)],
+        "damped_critical_speeds": [b / a - 1.0 for a, b in zip(full.damped_criticals, model.damped_criticals, strict=False) if a <= FINAL],
         "peaks": peaks,
         "bands": parts,
         "at_the_final_speed": last,

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
 
+from benchmarks.bearings.as_it_comes import as_it_comes
 from benchmarks.bearings.cases import BEARINGS, CASES, DURATION, FULL, M_REF, MODELS, PAPER, SIMPLIFIED, Case, with_model
 from benchmarks.bearings.claims import aims, claims
 from benchmarks.bearings.figures import figures
@@ -48,6 +49,7 @@ def study(*, quick: bool, repeats: int) -> tuple[Findings, dict[str, Any], list[
             if report is not None:
                 report(runs_share + (total - runs_share) * done / work(grid))
 
+        defaults = {case: {model: as_it_comes(one, duration) for model, one in of.items()} for case, of in runs.items()}
         swept = {"maps": maps(grid, one_more), "damping": damping_places(grid, one_more)}
         found = Findings(
             duration=duration,
@@ -55,6 +57,7 @@ def study(*, quick: bool, repeats: int) -> tuple[Findings, dict[str, Any], list[
             steady=responses,
             run_ups={case: compared(histories[case], responses[case][FULL]) for case in paper},
             without_tilt={case: against(_without_tilt(case, speeds), responses[case][FULL]) for case in paper},
+            defaults=defaults,
             swept=swept,
         )
         verdicts, reached = claims(found), aims(found)

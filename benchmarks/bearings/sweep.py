@@ -15,16 +15,16 @@ import numpy as np
 import numpy.typing as npt
 
 import hdrive_mbs as hm
-from benchmarks.bearings.cases import BEARINGS, FULL, IMPROVED, M_REF, M_REF2, MERGED, SIMPLIFIED, Case, with_model
+from benchmarks.bearings.cases import BEARINGS, FINAL, FULL, IMPROVED, M_REF, M_REF2, MERGED, SIMPLIFIED, Case, with_model
 from benchmarks.bearings.run_up import ROTORS
-from benchmarks.bearings.steady import FINAL, forward_criticals
+from benchmarks.bearings.steady import forward_criticals
 from hdrive_mbs.analysis.response_peaks import ResponsePeak
 from hdrive_mbs.analysis.unbalance_response import unbalance_response
 
 FloatArray = npt.NDArray[np.float64]
 
 CHEAPER = (MERGED, SIMPLIFIED, IMPROVED)
-KEYS = ("critical_speeds", *ROTORS, "warned")
+KEYS = ("critical_speeds", *ROTORS, "largest", "warned")
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def first_peaks(scene: hm.Scene, first: float) -> dict[str, ResponsePeak]:
 def deviations(full: hm.Scene, models: Sequence[str]) -> dict[str, dict[str, float]]:
     """Model -> largest deviation of the critical speeds met, signed ones of the first peaks, 1 where there were warnings.
 
-    NaN where there is no peak.
+    ``largest`` is that of the rotor that moves most.  NaN where there is no peak.
     """
     exact = forward_criticals(full)
     tops = first_peaks(full, exact[0])
@@ -91,6 +91,7 @@ def deviations(full: hm.Scene, models: Sequence[str]) -> dict[str, dict[str, flo
         for rotor in ROTORS:
             both = rotor in tops and rotor in peaks
             row[rotor] = peaks[rotor].amplitude / tops[rotor].amplitude - 1.0 if both else math.nan
+        row["largest"] = row[max(tops, key=lambda rotor: tops[rotor].amplitude)]
         found[model] = row
     return found
 

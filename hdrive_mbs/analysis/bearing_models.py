@@ -5,6 +5,10 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from hdrive_mbs.analysis.mode_shifts import ModeShifts, mode_shifts
 from hdrive_mbs.components.bearing import Bearing, has_forces
@@ -17,6 +21,8 @@ from hdrive_mbs.components.supported_section import SupportedSection
 from hdrive_mbs.errors import ParameterError, PlaceError, SceneError, unknown_place
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.topology import GROUND, joints
+
+FloatArray = npt.NDArray[np.float64]
 
 MODELS = ("full", "merged", "simplified", "improved")
 
@@ -87,8 +93,8 @@ class _Line:
                 changed = changed.with_effect(placed.effect, at=placed.at, name=placed.name)
             except PlaceError as error:
                 raise PlaceError(
-                    f"The effect {placed.name!r} at {placed.at!r} has no place in this model of the bearings; remove it, or leave its bearing "
-                    f"out of ``bearings``. {error}"
+                    f"The effect {placed.name!r} at {placed.at!r} has no place in this model of the bearings; remove it, or leave its "
+                    f"bearing out of ``bearings``. {error}"
                 ) from None
         return changed
 
@@ -116,7 +122,7 @@ class _Line:
                 f"the {model} bearing replaces a section of shaft on both sides, and {name!r} has one on "
                 f"{'one side' if left or right else 'neither side'} only. Leave it full, or continue the shaft beyond it."
             )
-        data = {"left": self.parts[left], "bearing": bearing, "right": self.parts[right]}
+        data: dict[str, Any] = {"left": self.parts[left], "bearing": bearing, "right": self.parts[right]}
         made: Component
         made = SimplifiedSection(**data) if model == "simplified" else ImprovedSection(**data, highest_speed=highest_speed)
         self.pairs = [pair for pair in self.pairs if name not in pair]
@@ -204,8 +210,8 @@ def _left_out(parts: Mapping[str, Component], wanted: Iterable[str]) -> list[str
         law, housing = part.bearing.law, part.bearing.housing
         if has_forces(law):
             remarks.append(
-                f"{name}: the simplified bearing leaves out all forces of {type(law).__name__} beyond its constant axial and tilt stiffness. "
-                "The improved model keeps them."
+                f"{name}: the simplified bearing leaves out all forces of {type(law).__name__} beyond its constant axial and tilt "
+                "stiffness. The improved model keeps them."
             )
         if housing is not None and (housing.power_stiffness_x or housing.power_stiffness_y):
             remarks.append(f"{name}: the simplified bearing leaves out the power term of the foundation. The improved model keeps it.")
@@ -215,18 +221,27 @@ def _left_out(parts: Mapping[str, Component], wanted: Iterable[str]) -> list[str
 def _parting(model: str, shifts: Sequence[ModeShifts]) -> list[str]:
     """Where the modes of the model and of the full one part by more than the model should allow."""
     frequency_limit, damping_limit = LIMITS[model]
+    way_out = "Raise highest_speed, or use the full model." if model == "improved" else "Use the improved or the full model."
     remarks = []
     for shift in shifts:
-        for limit, parted, full, other, what, unit in (
-            (frequency_limit, shift.frequency, shift.full.frequency, shift.model.frequency, "frequency", " rad/s"),
-            (damping_limit, shift.damping, shift.full.damping_ratio, shift.model.damping_ratio, "damping ratio", ""),
-        ):
-            worst = max(range(len(parted)), key=lambda k: abs(parted[k]), default=None)
-            if worst is not None and not abs(parted[worst]) <= limit:
-                consequence = "its critical speed is wrong by that" if what == "frequency" else "its amplitude at resonance is wrong the other way"
-                remarks.append(
-                    f"{model} bearings change the {what} of lateral mode {worst + 1} at {shift.speed:g} rad/s from {full[worst]:.5g}{unit} to "
-                    f"{other[worst]:.5g}{unit} ({100.0 * parted[worst]:+.3g} %, more than {100.0 * limit:g} %): {consequence}. "
-                    + ("Use the improved or the full model." if model != "improved" else "Raise highest_speed, or use the full model.")
-                )
+        if (k := _worst(shift.frequency, frequency_limit)) is not None:
+            remarks.append(
+                f"{model} bearings change the frequency of lateral mode {k + 1} at {shift.speed:g} rad/s by "
+                f"{100.0 * shift.frequency[k]:+.3g} %, from {shift.full.frequency[k]:.5g} rad/s; more than {100.0 * frequency_limit:g} %. "
+                f"Critical speeds are wrong by about as much. {way_out}"
+            )
+        if (k := _worst(shift.damping, damping_limit)) is not None:
+            remarks.append(
+                f"{model} bearings change the damping ratio of lateral mode {k + 1} at {shift.speed:g} rad/s by "
+                f"{100.0 * shift.damping[k]:+.3g} %, from {shift.full.damping_ratio[k]:.4g}; more than {100.0 * damping_limit:g} %. "
+                f"Resonant amplitudes are wrong by about as much, the other way. {way_out}"
+            )
     return remarks
+
+
+def _worst(change: FloatArray, limit: float) -> int | None:
+    """Place of the largest change, if it is over the limit."""
+    if not len(change):
+        return None
+    worst = int(np.argmax(np.abs(change)))
+    return None if abs(change[worst]) <= limit else worst

@@ -81,7 +81,7 @@ class BlockBranches:
         return reduced_model(self.block, self._whirl, self._grid, wanted)
 
     def _values(self, solved: list[Roots]) -> ComplexArray:
-        values = np.full(self.table.shape, np.nan + 0j)
+        values = np.full(self.table.shape, complex(np.nan, np.nan))
         for row, roots in enumerate(solved):
             there = self.table[row] != NONE
             values[row, there] = roots.values[self.table[row, there]]
@@ -117,7 +117,7 @@ class BlockBranches:
         if self._slopes is None:
             self._slopes = [roots.slopes(*self.model.slopes(0.0)) for roots in (self.tracker.roots(speed) for speed in self._grid)]
         column = self.table[:, branch]
-        return np.array([slopes[k] if k != NONE else np.nan for slopes, k in zip(self._slopes, column, strict=True)])
+        return np.array([slopes[k] if k != NONE else complex(np.nan, np.nan) for slopes, k in zip(self._slopes, column, strict=True)])
 
     def at(self, branch: int, speed: float) -> tuple[complex, ComplexArray] | None:
         """lambda and shape of a branch between two speeds of the grid; None where it does not exist."""

@@ -17,8 +17,13 @@ IndexArray = npt.NDArray[np.intp]
 
 
 def line_blocks(line: SpinningLine) -> list[LineBlock]:
-    """Bending, torsion and axial motion apart, where nothing couples them."""
-    count, label = connected_components(csr_array(line.couplings.astype(float)), directed=False)
+    """Bending, torsion and axial motion apart, where nothing couples them; both bending planes together, as orbits are of both."""
+    couplings = line.couplings.astype(float)
+    index = {name: k for k, name in enumerate(line.names)}
+    for spin in line.ratios:
+        station = [index[name] for name in (f"{spin}.{key}" for key in ("x", "y", "psi", "theta")) if name in index]
+        couplings[np.ix_(station, station)] = 1.0
+    count, label = connected_components(csr_array(couplings), directed=False)
     return [LineBlock(line, np.flatnonzero(label == k)) for k in range(count)]
 
 

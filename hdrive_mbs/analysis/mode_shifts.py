@@ -6,17 +6,24 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import linear_sum_assignment
 
 from hdrive_mbs.analysis.line_matrices import LineMatrices
+from hdrive_mbs.analysis.rotor_point import rotor_point
+from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 LOWEST = 4
 """Modes compared where no speed is given: two in each of two planes."""
 
-VIBRATES = 0.9
+CREEPS = 0.9
 """Damping ratio above which a motion counts as creeping, not as a mode."""
+
+ROUNDING = 1e-6
+"""Share of the largest root below which a root is a zero (of a line that nothing holds) and rounding."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +36,7 @@ class LateralModes:
 
 @dataclass(frozen=True)
 class ModeShifts:
-    """Modes of the full line and of a model at a spin speed [rad/s], as many as are compared."""
+    """Modes of the full line at a spin speed [rad/s], and what became of each in a model (nan: nothing)."""
 
     speed: float
     full: LateralModes
@@ -47,32 +54,33 @@ class ModeShifts:
 
 
 def _change(full: FloatArray, model: FloatArray) -> FloatArray:
-    padded = np.concatenate([model, np.full(max(0, len(full) - len(model)), np.inf)])[: len(full)]
-    return np.divide(padded, full, out=np.ones_like(full), where=full != 0.0) - 1.0
+    found = np.where(np.isnan(model), np.inf, model)
+    return np.asarray(np.divide(found, full, out=np.ones_like(full), where=full != 0.0) - 1.0)
 
 
 def mode_shifts(full: Scene, model: Scene, highest_speed: float | None = None) -> tuple[ModeShifts, ...]:
     """Lateral modes up to a frequency [rad/s], at rest and at that speed of the reference shaft; without it the lowest at rest.
 
-    Laws are linearised in the middle of the bearings, all coordinates at zero.
+    About the static deflection at the speed; a speed where there is none (a journal bearing at rest) is left out.
     """
-    lines = LineMatrices(full.network()), LineMatrices(model.network())
-    speeds = (0.0,) if highest_speed is None else (0.0, highest_speed)
     made = []
-    for speed in speeds:
-        found = [lateral_modes(line, speed) for line in lines]
-        count = LOWEST if highest_speed is None else int(np.sum(found[0].frequency <= highest_speed))
-        cut = [LateralModes(modes.frequency[:count], modes.damping_ratio[:count]) for modes in found]
-        made.append(ModeShifts(speed, *cut))
+    for speed in (0.0,) if highest_speed is None else (0.0, highest_speed):
+        try:
+            whole, part = (lateral_roots(scene, speed) for scene in (full, model))
+        except AnalysisError:
+            continue
+        count = LOWEST if highest_speed is None else int(np.sum(np.abs(whole) <= highest_speed))
+        whole = whole[:count]
+        made.append(ModeShifts(speed, _modes(whole), _modes(_partners(whole, part))))
     return tuple(made)
 
 
-def lateral_modes(lines: LineMatrices, speed: float) -> LateralModes:
-    """Modes of bending at a spin speed [rad/s] of the reference shaft; axial and torsional motion held."""
-    network = lines.network
-    spins = {body.name: 0.0 if body.lateral else body.sense * body.ratio * speed for body in network.bodies}
-    states = {state.name: state.initial for state in network.states}
-    system = lines.at(dict.fromkeys(lines.names, 0.0), spins, states)
+def lateral_roots(scene: Scene, speed: float) -> ComplexArray:
+    """Roots s of bending at a spin speed [rad/s] of the reference shaft, by frequency; axial and torsional motion held."""
+    network = scene.network()
+    lines = LineMatrices(network)
+    point = rotor_point(scene, speed, lines=lines)
+    system = lines.at(point.angles, point.speeds, point.states)
     kept = [k for k, body in enumerate(network.bodies) if body.lateral and not body.name.endswith(".z")]
     at = np.ix_(kept, kept)
     n = len(kept)
@@ -80,9 +88,19 @@ def lateral_modes(lines: LineMatrices, speed: float) -> LateralModes:
     first_order[:n, n:] = np.eye(n)
     first_order[n:, :n] = -np.linalg.solve(system.mass[at], system.stiffness[at])
     first_order[n:, n:] = -np.linalg.solve(system.mass[at], system.damping[at])
-    values = np.linalg.eigvals(first_order)
-    values = values[values.imag > 0.0]
-    ratios = -values.real / np.abs(values)
-    values, ratios = values[np.abs(ratios) < VIBRATES], ratios[np.abs(ratios) < VIBRATES]
-    order = np.argsort(np.abs(values))
-    return LateralModes(np.abs(values)[order], ratios[order])
+    roots = np.linalg.eigvals(first_order)
+    size = np.abs(roots)
+    roots = roots[(roots.imag > 0.0) & (np.abs(roots.real) < CREEPS * size) & (size > ROUNDING * size.max())]
+    return np.asarray(roots[np.argsort(np.abs(roots))])
+
+
+def _partners(whole: ComplexArray, part: ComplexArray) -> ComplexArray:
+    """For each root of the full line the one of the model that it has become, all in all the nearest; nan for none."""
+    found = np.full(len(whole), np.nan, complex)
+    rows, columns = linear_sum_assignment(np.abs(whole[:, None] - part) / np.abs(whole[:, None]))
+    found[rows] = part[columns]
+    return found
+
+
+def _modes(roots: ComplexArray) -> LateralModes:
+    return LateralModes(np.abs(roots), -roots.real / np.abs(roots))

@@ -25,7 +25,7 @@ from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray
 
 STEADY = 0.01
-"""Largest change of the speed over a tenth of the run, at its end, that counts as steady."""
+"""Largest change of speed or amplitude over a tenth of the run, at its end, that counts as steady."""
 
 FALLEN = 0.01
 """A coast-down that loses less than this share of its speed has nothing that brakes it."""
@@ -45,7 +45,7 @@ class RunUp(Response):
     mass_centre_amplitude, mass_centre_speed, mass_centre_time : the same of P
     peak_distance : rotor -> largest distance of C from the axis [m]
     maxima : rotor -> rows of (speed, amplitude, time, prominence, critical speed), see ``peaks``
-    final_speed : of the reference at the end: straight line through the last four revolutions [rad/s]
+    final_speed : of the reference at the end: parabola through the last two revolutions [rad/s]
     final_speeds : rotor -> the same
     critical_speeds : undamped, of the reference, excited by the unbalance, as far as the run could meet them [rad/s]
     captured : whether the spin stays below a speed that its drive would reach, because whirl takes the torque
@@ -188,7 +188,9 @@ def _run(
         notes.append("there is no static deflection, so whirl counts from the axis")
     reason = "solver given"
     if solver is None:
-        chosen = choose_step(fastest, ratios, criticals, duration, accuracy)
+        moving = {body.name for body in network.bodies if body.lateral}
+        whirling = {name: speed for name, speed in fastest.items() if f"{name}.x" in moving}
+        chosen = choose_step(whirling, ratios, criticals, duration, accuracy)
         solver = Trapezoidal(step=chosen.step, newton_tolerance=chosen.newton_tolerance)
         reason = chosen.reason
     start = _start(scene, line, initial_speed) if from_static else {}
@@ -243,7 +245,10 @@ def _chosen(scene: Scene, places: Sequence[str] | None) -> dict[str, RigidMass]:
 
 def _start(scene: Scene, line: FreeLine, speed: float) -> dict[str, float]:
     """Initial values: static deflection and, if the line turns, the steady orbits."""
-    point = line.point(speed)
+    try:
+        point = line.point(speed)
+    except AnalysisError as error:
+        raise AnalysisError(f"{error} Or start at another initial_speed, or with from_static=False.") from None
     bodies = scene.network().bodies
     values = {body.name: point.angles[body.name] for body in bodies if body.lateral}
     values |= {f"{body.name}.angle": body.sense * point.angles[body.name] for body in bodies if not body.lateral}
@@ -312,7 +317,13 @@ def _status(response: Response, figures: LineFigures, criticals: Sequence[Critic
         said.insert(0, _captured(figures.balance, [item.speed for item in criticals]))
     elif abs(figures.final_acceleration) * LAST_PART * end > STEADY * abs(figures.final_speed):
         said.append(f"the speed still changes, by {figures.final_acceleration:.3g} rad/s^2 at the end")
-    late = [name for name, rotor in figures.rotors.items() if rotor.centre.time >= end * (1.0 - 1e-9)]
+    before = int(np.searchsorted(response.times, (1.0 - LAST_PART) * end, side="right"))
+    late = [
+        name
+        for name, rotor in figures.rotors.items()
+        if rotor.centre.time >= end * (1.0 - 1e-9)
+        and float(np.max(rotor.channels["whirl"][0][:before])) < (1.0 - STEADY) * rotor.centre.amplitude
+    ]
     if late:
         said.append(f"the amplitude of {', '.join(late)} is largest at the very end: give a longer duration")
     return "; ".join(["complete", *said])

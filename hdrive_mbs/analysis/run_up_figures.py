@@ -18,10 +18,13 @@ from hdrive_mbs.network.rigid_mass import RigidMass
 from hdrive_mbs.signals import FloatArray, TimeHistory
 
 LAST_PART = 0.1
-"""Share of the run at its end over which torques are balanced; four revolutions at least."""
+"""Share of the run at its end over which torques are balanced."""
 
-REVOLUTIONS = 4.0
-"""Revolutions at the end of the run whose straight line gives the final speed."""
+BALANCED = 4.0
+"""Revolutions over which they are balanced at least."""
+
+REVOLUTIONS = 2.0
+"""Revolutions at the end of the run whose parabola gives the final speed."""
 
 
 @dataclass(frozen=True)
@@ -87,12 +90,13 @@ def _peak(whirl: Whirl, speed: TimeHistory) -> Peak:
 
 
 def final_speed(times: FloatArray, angle: FloatArray, speed: FloatArray) -> tuple[float, float]:
-    """Speed [rad/s] and acceleration [rad/s^2] at the end, of the straight line through the last revolutions."""
+    """Speed [rad/s] and acceleration [rad/s^2] at the end, of the parabola through the last revolutions."""
     before = np.nonzero(np.abs(angle - angle[-1]) > REVOLUTIONS * 2.0 * math.pi)[0]
     first = int(before[-1]) + 1 if len(before) else 0
-    if len(times) - first < 3:
+    if len(times) - first < 4:
         return float(speed[-1]), 0.0
-    slope, last = np.polyfit(times[first:] - times[-1], speed[first:], 1)
+    span = times[-1] - times[first]
+    _, slope, last = np.polyfit((times[first:] - times[-1]) / span, speed[first:], 2) / (1.0, span, 1.0)
     return float(last), float(slope)
 
 
@@ -123,7 +127,7 @@ def line_figures(
     times, speed, angle = response.times, response.values[f"{reference}.speed"], response.values[f"{reference}.angle"]
     speeds = np.array(criticals)
     last, slope = final_speed(times, angle, speed)
-    revolutions = times[np.abs(angle - angle[-1]) >= REVOLUTIONS * 2.0 * math.pi]
+    revolutions = times[np.abs(angle - angle[-1]) >= BALANCED * 2.0 * math.pi]
     begin = min(times[-1] - LAST_PART * (times[-1] - times[0]), revolutions[-1] if len(revolutions) else times[0])
     prescribed = network.motions_drive
     return LineFigures(

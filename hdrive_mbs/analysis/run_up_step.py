@@ -76,7 +76,7 @@ def choose_step(
 ) -> ChosenStep:
     """The longest step of the trapezoidal rule that keeps peaks within ``accuracy`` (relative).
 
-    fastest, ratios : highest speed [rad/s] and speed ratio of each spin
+    fastest : highest speed [rad/s] of each spin that moves laterally too;  ratios : speed ratios of spins
 
     The rule answers an excitation of frequency w as the line would at  (2/h) tan(w h/2) = w (1 + (w h)^2/12): critical
     speeds come out (w h)^2/12 too low, and a peak there with them.  Its amplitude goes with m e w^2/(c w), whose

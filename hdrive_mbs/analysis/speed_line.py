@@ -225,7 +225,7 @@ class SpeedLine:
     @cached_property
     def _by_mass(self) -> tuple[FloatArray, FloatArray, float]:
         """R with M = R R^T, its inverse, and the largest eigenvalue of the stiffness with the mass made one (by its norm)."""
-        root = np.linalg.cholesky(self.mass)
+        root = np.asarray(np.linalg.cholesky(self.mass), float)
         inverse = np.linalg.inv(root)
         return root, inverse, float(np.linalg.norm(inverse @ self.matrices(float(self.knots[-1]))[1] @ inverse.T, 2))
 

@@ -48,7 +48,8 @@ class StationShapes:
         """Shapes over the coordinates ``index``, (n, k), as (k, places, 6), scaled.
 
         The place with the largest motion of the kind that prevails (displacement across or along the axis, else
-        spin, else tilt) has amplitude 1 (0-peak, major semi-axis), and its larger coordinate is there at time 0.
+        spin, else tilt) has amplitude 1 (0-peak, major semi-axis), and its larger coordinate (x of a circle) is there at
+        time 0.
         """
         motion = np.einsum("pdn,nk->kpd", self._matrix[:, :, index], shapes)
         for mode in motion:
@@ -58,7 +59,8 @@ class StationShapes:
             for size, options in ((orbit, (x, y)), (np.abs(z), (z,)), (np.abs(phi), (phi,)), (tilt, (theta, psi))):
                 if size.max(initial=0.0) > 1e-9 * np.abs(mode).max(initial=0.0):
                     place = int(np.argmax(size))
-                    lead = max((complex(option[place]) for option in options), key=abs)
+                    first, last = complex(options[0][place]), complex(options[-1][place])
+                    lead = first if abs(first) > 0.999 * abs(last) else last  # x of a circle
                     mode *= abs(lead) / lead / size[place]
                     break
         return np.asarray(motion)

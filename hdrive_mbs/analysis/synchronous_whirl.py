@@ -17,7 +17,8 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 EXCITED = 1e-6
-"""Share of the most strongly excited mode below which a mode counts as not excited (backward whirl of a symmetric line)."""
+"""Share of the most strongly excited mode, and of the work that the forces on it would do in phase, below which a mode
+counts as not excited (backward whirl of a symmetric line)."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +95,9 @@ def critical_speeds(lines: LineMatrices, slower: RotorPoint, faster: RotorPoint,
         speeds, shapes = np.sqrt(squares[real].real), shapes[:, real]
         elastic = np.abs(np.einsum("ik,ij,jk->k", shapes.conj(), stiffness, shapes))
         lost = np.einsum("ik,ij,jk->k", shapes.conj(), system.damping[at], shapes).real
-        work = np.abs(shapes.conj().T @ sum(group)) * (speeds / faster.speed) ** 2
+        total = sum(group, np.zeros(len(lateral), complex))
+        work, most = np.abs(shapes.conj().T @ total), np.abs(shapes).T @ np.abs(total)
+        work = np.where(work > EXCITED * most, work, 0.0) * (speeds / faster.speed) ** 2
         size = np.where(elastic > 0.0, work / np.where(elastic > 0.0, elastic, 1.0), 0.0)
         largest = size * np.max(np.abs(shapes), axis=0, initial=0.0)
         for k in np.nonzero(largest > EXCITED * float(np.max(largest, initial=0.0)))[0]:

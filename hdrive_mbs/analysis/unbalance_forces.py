@@ -74,8 +74,9 @@ def trial_source(
     """
     bodies = {body.name: body for body in network.bodies}
     body = bodies.get(network.places.get(place, ""))
-    if body is None or not body.ratio:
-        turning = [name for name, node in network.places.items() if node in bodies and bodies[node].ratio and f"{node}.x" in bodies]
+    if body is None or not body.ratio or not x:
+        stations = {name: node for name, node in network.places.items() if not name.endswith((".a", ".b"))}
+        turning = [name for name, node in stations.items() if node in bodies and bodies[node].ratio and f"{node}.x" in bodies]
         raise unknown_place("turning place", place, turning)
     try:
         size, angle = (float(value) for value in unbalance)

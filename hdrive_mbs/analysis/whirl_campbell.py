@@ -153,7 +153,7 @@ def campbell(
     words, circularity = _classified(kinds, branches, direction)
     criticals = _criticals(kinds, grid, branches, lines)
     thresholds = _thresholds(grid, branches)
-    ratios = -values.real / np.abs(values)
+    ratios = _ratio(values)
     stable = np.array([_is_stable(parts, row) for row in range(len(grid))])
     return WhirlCampbell(
         scene=scene,
@@ -306,26 +306,30 @@ def _criticals(kinds: WhirlKinds, grid: FloatArray, branches: list[_Branch], lin
 
 
 def _thresholds(grid: FloatArray, branches: list[_Branch]) -> list[_Threshold]:
+    """Where branches begin or cease to grow: Re(lambda) = 0, or the edge of rounding where the other side is undamped."""
     found = []
     for number, branch in enumerate(branches):
-        values = branch.values
-        growth = _growth(values)
+        growth = -_ratio(branch.values)
+        for k in np.flatnonzero((growth[:-1] > STABLE) != (growth[1:] > STABLE)):
+            if not np.isfinite(growth[k] + growth[k + 1]):
+                continue
+            edge = 0.0 if min(growth[k], growth[k + 1]) < -STABLE else STABLE
 
-        def exact(speed: float, branch: _Branch = branch) -> float:
-            there = branch.part.at(branch.column, speed)
-            return np.nan if there is None else float(_growth(np.array([there[0]]))[0])
+            def exact(speed: float, branch: _Branch = branch, edge: float = edge) -> float:
+                there = branch.part.at(branch.column, speed)
+                return np.nan if there is None else -float(_ratio(np.array([there[0]]))[0]) - edge
 
-        for speed in zeros(grid, growth, exact):
-            there = branch.part.at(branch.column, speed)
-            after = growth[min(int(np.searchsorted(grid, speed, side="right")), len(grid) - 1)]
-            if there is not None:
-                found.append(_Threshold(speed, number, there[0].imag, "unstable above" if after > 0.0 else "stable above"))
+            for speed in zeros(grid[k : k + 2], growth[k : k + 2] - edge, exact):
+                there = branch.part.at(branch.column, speed)
+                if there is not None:
+                    note = "unstable above" if growth[k + 1] > STABLE else "stable above"
+                    found.append(_Threshold(speed, number, there[0].imag, note))
     return sorted(found, key=lambda threshold: threshold.speed)
 
 
-def _growth(values: ComplexArray) -> FloatArray:
-    """Negative damping ratio beyond what rounding makes of an undamped line."""
-    return np.asarray(values.real / np.abs(values) - STABLE)
+def _ratio(values: ComplexArray) -> FloatArray:
+    """Damping ratio."""
+    return np.asarray(-values.real / np.abs(values))
 
 
 def _is_stable(parts: list[BlockBranches], row: int) -> bool:

@@ -25,6 +25,7 @@ _KINDS = ("lateral", "axial", "torsional")
 class _Pair:
     """Two coordinates that make an orbit: (x, y), or (theta, -psi) with sign -1; sense of the spin there; their inertia."""
 
+    place: str
     first: int
     second: int
     sign: float
@@ -47,7 +48,7 @@ class WhirlKinds:
             for first, second, sign in ((".x", ".y", 1.0), (".theta", ".psi", -1.0)):
                 a, b = index.get(f"{spin}{first}"), index.get(f"{spin}{second}")
                 if a is not None and b is not None:
-                    self._pairs.append(_Pair(a, b, sign, -1.0 if ratio < 0.0 else 1.0, float(line.mass[a, a])))
+                    self._pairs.append(_Pair(spin, a, b, sign, -1.0 if ratio < 0.0 else 1.0, float(line.mass[a, a])))
         lateral = {body.name for body in line.network.bodies if body.lateral}
         kind = ["torsional" if name not in lateral else "axial" if name.endswith("z") else "lateral" for name in line.names]
         self._members = {word: np.array([item == word for item in kind]) for word in _KINDS}
@@ -85,8 +86,10 @@ class WhirlKinds:
         weight = np.array([[pair.weight] for pair in pairs]).reshape(-1, 1)
         sense = np.array([[pair.sense] for pair in pairs]).reshape(-1, 1) * direction
         positive, negative = weight * np.abs(first + 1j * second) ** 2, weight * np.abs(first - 1j * second) ** 2
-        area = sense * (positive - negative)
         circles = np.sum(positive + negative, axis=0)
+        places = list(dict.fromkeys(pair.place for pair in pairs))
+        at_place = np.array([[float(pair.place == place) for pair in pairs] for place in places]).reshape(len(places), len(pairs))
+        area = at_place @ (sense * (positive - negative))
         forward, backward = np.sum(np.maximum(area, 0.0), axis=0), np.sum(np.maximum(-area, 0.0), axis=0)
         words = []
         for k, kind in enumerate(kinds):

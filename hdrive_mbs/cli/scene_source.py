@@ -50,7 +50,12 @@ def module_of(path: Path) -> ModuleType:
     if beside not in sys.path:
         sys.path.insert(0, beside)  # as python itself does for a script: a scene may import what lies beside it
     sys.modules[spec.name] = module  # a dataclass in the file looks its module up there
-    spec.loader.exec_module(module)
+    sys.modules[module.__name__] = module  # dataclasses of a scene's own look their module up there
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[module.__name__]
+        raise
     return module
 
 

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.bearings.law import DIRECTIONS
 from hdrive_mbs.bearings.looked_at import directions_looked_at
 from hdrive_mbs.components.bearing import add_law, power_law
 from hdrive_mbs.components.component import Flange
-from hdrive_mbs.components.supported_line import CondensedLine, condensed_line, supported_line
-from hdrive_mbs.components.supported_section import SupportedSection, add_place, add_spring, factors_of, turning
+from hdrive_mbs.components.condensed_line import CondensedLine, condensed_line
+from hdrive_mbs.components.recovered_place import add_place, factors_of
+from hdrive_mbs.components.section_torsion import add_spring, turning
+from hdrive_mbs.components.shaft_section import ShaftSection
+from hdrive_mbs.components.supported_line import supported_line
+from hdrive_mbs.components.supported_section import SupportedSection
 from hdrive_mbs.network.circulation import Circulation
 from hdrive_mbs.network.draft import Draft
+from hdrive_mbs.network.node import Node
 from hdrive_mbs.network.station import LATERAL, UNITS, WORDS, Station
 from hdrive_mbs.quantities import parameter
 
@@ -24,6 +28,9 @@ FloatArray = npt.NDArray[np.float64]
 
 CLEAR = 5.0
 """The lowest mode left out lies at least this many times above the highest speed; what it would add is below 1/25 of a static share."""
+
+AT_RING = 0.1
+"""Share of its polar inertia that a ring carries which turns by itself; see ``_carried``."""
 
 LAGGING = 0.01
 """Share (speed times lag)^2 of the damping at the ring up to which the ring follows its neighbours statically."""
@@ -42,8 +49,8 @@ class ImprovedSection(SupportedSection):
 
     * of the ring, the directions that the law of the bearing looks at beyond symmetric constant matrices, counted
       across the bearing: a nonlinear force acts at the true displacement;
-    * of the ring x and y, when its damping would lag: (highest_speed d/k)^2 above 0.01, d/k of the ring held at the ends;
     * the spin of the ring, when the law looks at it or brakes it; else it follows the ends;
+    * of the ring x and y, when its damping would lag: (highest_speed d/k)^2 above 0.01, d/k of the ring held at the ends;
     * fixed-interface modes below 5 times ``highest_speed``; without that speed none.
 
     Static motion is exact.  Leaves out the inertia of the ring on its bearing above all these frequencies; its
@@ -89,9 +96,24 @@ class ImprovedSection(SupportedSection):
     def flanges(self) -> tuple[Flange, ...]:
         if not self.keeps_spin:
             return super().flanges()
-        ends, halves = super().flanges(), [part.beam().end_polar_inertia() for part in (self.left, self.right)]
-        made = [Flange(name=end.name, lateral=True, mass=turning(half), axial=end.axial, free=end.free) for end, half in zip(ends, halves)]
-        return (*made, Flange(name="ring", inertia=self.bearing.polar_inertia + sum(halves), free=True))
+        carried = self._carried
+        a, b = (replace(end, mass=turning(share)) for end, share in zip(super().flanges(), (carried[0], carried[2]), strict=True))
+        return a, b, Flange(name="ring", inertia=carried[1], free=True)
+
+    @property
+    def _carried(self) -> tuple[float, float, float]:
+        """Polar inertia that a, ring and b carry as bodies where the ring turns by itself [kg m^2].
+
+        Most is at the ends, where it resists their tilting; the matrix of mass puts it back to the ring, where it turns.
+        """
+        a, b = self.torsion.shares
+        return (1.0 - AT_RING) * a, AT_RING * (a + b), (1.0 - AT_RING) * b
+
+    def _spin_mass(self) -> tuple[float, float, float]:
+        """What the matrix of mass has for the spins of a, ring and b: half of each shaft at its ends, less what they carry."""
+        left, right = (section.beam().end_polar_inertia() for section in (self.left, self.right))
+        a, ring, b = self._carried
+        return left - a, self.bearing.polar_inertia + left + right - ring, right - b
 
     def relations(self) -> tuple[Mapping[str, float], ...]:
         return ({"a": 1.0, "ring": -1.0}, {"ring": 1.0, "b": -1.0}) if self.keeps_spin else super().relations()
@@ -100,25 +122,37 @@ class ImprovedSection(SupportedSection):
         a, b = self.stations(name, draft)
         line = self.condensed
         own = tuple(self._add_coordinate(name, draft, kept) for kept in line.kept)
-        draft.add_matrix(
-            f"{name}.section",
-            (a, b),
-            own,
-            mass=line.mass if self.keeps_spin else self.with_coupled_spins(line.mass),
-            damping=line.damping,
-            stiffness=line.stiffness,
-            falling=line.falling,
-        )
+        self._add_matrices(name, draft, (a, b), own)
         if line.rotating.any():
             draft.add_element(Circulation.over(f"{name}.rotating_damping", (a, b), own, line.circulatory, line.rotating))
-        if self.keeps_spin:
-            self._add_two_springs(name, draft, a, b)
-        else:
-            self.add_twist(name, draft, a, b)
+        spin = self._add_torsion(name, draft, a, b)
         rows = {key: factors_of(line.ring[k], a, b, own) for k, key in enumerate(LATERAL)}
         add_place(name, draft, rows, line.ring_sag)
         self._add_housing(name, draft)
-        self._add_law(name, draft, rows)
+        self._add_law(name, draft, rows | {"phi": spin})
+
+    def _add_matrices(self, name: str, draft: Draft, ends: tuple[Station, Station], own: tuple[str, ...]) -> None:
+        line = self.condensed
+        mass, damping, stiffness, falling = self.with_coupled_spins(line.mass), line.damping, line.stiffness, line.falling
+        if self.keeps_spin:
+            own = (*own, draft.body(f"{name}.ring").name)
+            mass, damping, stiffness = (np.pad(matrix, (0, 1)) for matrix in (line.mass, damping, stiffness))
+            falling = np.pad(falling, ((0, 1), (0, 0)))
+            mass[[5, -1, 11], [5, -1, 11]] = self._spin_mass()
+        draft.add_matrix(f"{name}.section", ends, own, mass=mass, damping=damping, stiffness=stiffness, falling=falling)
+
+    def _add_torsion(self, name: str, draft: Draft, a: Station, b: Station) -> dict[str, float]:
+        """Torsion springs, and the spin of the ring as factors of coordinates."""
+        if not self.keeps_spin:
+            add_spring(name, draft, a, b, self.torsion.stiffness, self.torsion.damping)
+            return self.add_spin(name, draft, self.ring_spin(a, b))
+        ring = draft.body(f"{name}.ring")
+        pieces: tuple[tuple[str, ShaftSection, Station | Node, Station | Node], ...]
+        pieces = (("left", self.left, a, ring), ("right", self.right, ring, b))
+        for key, part, first, last in pieces:
+            stiffness = part.shear_modulus * part.beam().polar_moment / part.length
+            add_spring(f"{name}.{key}", draft, first, last, stiffness, (part.damping + part.rotating_damping) * stiffness)
+        return self.add_spin(name, draft, {ring.name: float(ring.sense)})
 
     def _add_coordinate(self, name: str, draft: Draft, kept: str) -> str:
         """The coordinate of the network for a coordinate of the condensed line."""
@@ -139,13 +173,6 @@ class ImprovedSection(SupportedSection):
         """Whether the ring's displacement is counted from the housing."""
         return self.bearing.housing is not None and key in ("x", "y")
 
-    def _add_two_springs(self, name: str, draft: Draft, a: Station, b: Station) -> None:
-        """The pieces left and right of a ring that turns by itself."""
-        ring = draft.body(f"{name}.ring", asked_by=repr(name))
-        for key, part, ends in (("left", self.left, (a, ring)), ("right", self.right, (ring, b))):
-            stiffness = part.shear_modulus * part.beam().polar_moment / part.length
-            add_spring(f"{name}.{key}", draft, *ends, stiffness, (part.damping + part.rotating_damping) * stiffness)
-
     def _add_housing(self, name: str, draft: Draft) -> None:
         """The power term of the foundation; all else is in the matrices."""
         housing = self.bearing.housing
@@ -154,26 +181,20 @@ class ImprovedSection(SupportedSection):
         for key, factor in (("x", housing.power_stiffness_x), ("y", housing.power_stiffness_y)):
             if factor != 0.0:
                 coordinate = f"{name}.housing.{key}"
-                draft.add_relative_torque(
-                    f"{name}.foundation_{key}_power", {coordinate: 1.0}, power_law(factor, int(housing.power))
-                )
+                draft.add_relative_torque(f"{name}.foundation_{key}_power", {coordinate: 1.0}, power_law(factor, int(housing.power)))
 
     def _add_law(self, name: str, draft: Draft, rows: Mapping[str, Mapping[str, float]]) -> None:
         """The forces of the law along the coordinates kept for them, and its whole force as channels."""
-        stretches: dict[str, dict[str, float]] = {key: dict(rows[key]) for key in LATERAL}
+        stretches = {key: dict(factors) for key, factors in rows.items()}
         if self.bearing.housing is not None:
             for key in "xy":
                 coordinate = f"{name}.housing.{key}"
                 stretches[key][coordinate] = stretches[key].get(coordinate, 0.0) - 1.0
         for key in self.kept:
             stretches[key] = {f"{name}.across_{key}" if self._is_across(key) else f"{name}.{key}": 1.0}
-        stretches["phi"] = {}
-        if self.keeps_spin:
-            ring = draft.body(f"{name}.ring")
-            stretches["phi"] = {ring.name: float(ring.sense)}
         sag = self.condensed.ring_sag
 
         def offset(row: int) -> float:
             return float(sag[row] @ np.array(draft.gravity)) if row < len(sag) else 0.0
 
-        add_law(name, draft, self.bearing.law, {key: stretches[key] for key in DIRECTIONS}, offset)
+        add_law(name, draft, self.bearing.law, stretches, offset)

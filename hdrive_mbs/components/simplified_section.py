@@ -8,8 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.components.bearing import has_forces
+from hdrive_mbs.components.recovered_place import add_place, factors_of
+from hdrive_mbs.components.section_torsion import add_spring
 from hdrive_mbs.components.shaft_section import ShaftSection
-from hdrive_mbs.components.supported_section import SupportedSection, add_place, factors_of
+from hdrive_mbs.components.supported_section import SupportedSection
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.network.circulation import Circulation
 from hdrive_mbs.network.draft import Draft
@@ -50,8 +52,9 @@ class SimplifiedSection(SupportedSection):
                 )
         if self.bearing.housing is None and has_forces(self.bearing.law):
             raise ParameterError(
-                f"SimplifiedSection: a bearing without a housing has nothing but its law to hold the shaft, and {type(self.bearing.law).__name__} "
-                "is more than constant matrices. Give law.linearised(load=..., speed=...), or use ImprovedSection."
+                "SimplifiedSection: a bearing without a housing has nothing but its law to hold the shaft, and "
+                f"{type(self.bearing.law).__name__} is more than constant matrices. Give law.linearised(load=..., speed=...), "
+                "or use ImprovedSection."
             )
 
     @property
@@ -101,7 +104,8 @@ class SimplifiedSection(SupportedSection):
         if section.rotating_damping > 0.0:
             skew = section.rotating_damping * beam.circulatory()
             draft.add_element(Circulation.between(f"{name}.rotating_damping", a, b, skew, turning))
-        self.add_twist(name, draft, a, b)
+        add_spring(name, draft, a, b, self.torsion.stiffness, self.torsion.damping)
+        self.add_spin(name, draft, self.ring_spin(a, b))
         rows = {key: factors_of(shapes[k], a, b, ()) for k, key in enumerate(LATERAL)}
         add_place(name, draft, rows)
         if self.bearing.housing is not None:

@@ -1,10 +1,8 @@
-"""The shaft from a station over a bearing to the next station with nothing left out, and what condensing makes of it."""
+"""The shaft from a station over a bearing to the next station, with nothing left out."""
 
 from __future__ import annotations
 
-import contextlib
 import itertools
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -13,14 +11,12 @@ import numpy.typing as npt
 
 from hdrive_mbs.components.bearing import Bearing
 from hdrive_mbs.components.shaft_section import ShaftSection
-from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.network.station import LATERAL
 from hdrive_mbs.shafts.beam import Beam
-from hdrive_mbs.shafts.condensation import Condensed, craig_bampton
 
 FloatArray = npt.NDArray[np.float64]
 
-_ENDS = [*range(5), *range(6, 11)]
+ENDS = [*range(5), *range(6, 11)]
 """Places of the lateral coordinates of two stations in their 12-vector."""
 
 
@@ -88,7 +84,7 @@ def supported_line(left: ShaftSection, bearing: Bearing, right: ShaftSection) ->
     elements = itertools.chain(_beams(left), _beams(right))
     for (a, b), (section, beam) in zip(itertools.pairwise(stations), elements, strict=True):
         at = np.ix_(*[[names.index(f"{station}.{key}") for station in (a, b) for key in LATERAL]] * 2)
-        ends = np.ix_(_ENDS, _ENDS)
+        ends = np.ix_(ENDS, ENDS)
         elastic, turning = beam.stiffness()[ends], section.rotating_damping * beam.bending_stiffness()[ends]
         stiffness[at] += elastic
         damping[at] += section.damping * elastic + turning
@@ -117,106 +113,3 @@ def supported_line(left: ShaftSection, bearing: Bearing, right: ShaftSection) ->
         rotating=rotating,
         place=np.eye(size),
     )
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class CondensedLine:
-    """What is left over the ends a and b (6-vectors, phi without entries) and the coordinates kept between them.
-
-    kept : names of the coordinates kept, then ``mode_1``...
-    falling : forces per acceleration of gravity [kg], (n, 3)
-    ring : rows of the ring's x, y, z, psi, theta, (5, n);  ring_sag : what its own weight adds, per gravity, (5, 3)
-    frequencies : of the fixed-interface modes kept;  neglected : lowest one left out [rad/s]
-    lag : longest relaxation time of what was eliminated, its damping over its stiffness [s]
-    """
-
-    kept: tuple[str, ...]
-    mass: FloatArray
-    damping: FloatArray
-    stiffness: FloatArray
-    circulatory: FloatArray
-    rotating: FloatArray
-    falling: FloatArray
-    ring: FloatArray
-    ring_sag: FloatArray
-    frequencies: FloatArray
-    neglected: float
-    lag: float
-
-
-def condensed_line(line: SupportedLine, kept: Sequence[str], *, above: float = 0.0) -> CondensedLine:
-    """Everything but the ends, the coordinates ``kept`` and the fixed-interface modes below ``above`` [rad/s] eliminated statically."""
-    ends = [*range(10)]
-    boundary = [*ends, *line.at(*kept)]
-    interior = [k for k in range(len(line.names)) if k not in boundary]
-    result = _with_modes(line, boundary, interior, above)
-    count = len(result.frequencies)
-    scale = _scales(line, result, len(boundary))
-    shapes = result.transformation * scale
-
-    wide = np.zeros((12 + len(kept) + count, len(scale)))
-    wide[[*_ENDS, *range(12, len(wide))], range(len(scale))] = 1.0
-
-    def spread(matrix: FloatArray) -> FloatArray:
-        return wide @ (shapes.T @ matrix @ shapes) @ wide.T
-
-    inner_stiffness = line.stiffness[np.ix_(interior, interior)]
-    flexibility = np.zeros_like(line.stiffness)
-    flexibility[np.ix_(interior, interior)] = np.linalg.inv(inner_stiffness)
-    modal = result.transformation[:, len(boundary) :]
-    if count:
-        flexibility -= (modal / result.frequencies**2) @ modal.T
-    ring = line.place[[*range(10, 15)]]
-    return CondensedLine(
-        kept=(*kept, *(f"mode_{k}" for k in range(1, count + 1))),
-        mass=spread(line.mass),
-        damping=spread(line.damping),
-        stiffness=spread(line.stiffness),
-        circulatory=spread(line.circulatory),
-        rotating=spread(line.rotating),
-        falling=wide @ shapes.T @ line.falling,
-        ring=ring @ shapes @ wide.T,
-        ring_sag=ring @ flexibility @ line.falling,
-        frequencies=result.frequencies,
-        neglected=result.neglected,
-        lag=_lag(line, interior),
-    )
-
-
-def _with_modes(line: SupportedLine, boundary: Sequence[int], interior: Sequence[int], above: float) -> Condensed:
-    """Craig and Bampton's method with all modes below a frequency."""
-    result = _projected(line, boundary, interior, 0)
-    for modes in range(1, len(interior) + 1):
-        if not result.neglected < above:
-            break
-        with contextlib.suppress(ParameterError):  # a cut through a pair of equal frequencies: take both
-            result = _projected(line, boundary, interior, modes)
-    return result
-
-
-def _projected(line: SupportedLine, boundary: Sequence[int], interior: Sequence[int], modes: int) -> Condensed:
-    return craig_bampton(line.mass, line.damping, line.stiffness, boundary, interior, modes=modes, names=line.names, galerkin=True)
-
-
-def _scales(line: SupportedLine, result: Condensed, boundary: int) -> FloatArray:
-    """Factors of the columns: 1 for coordinates; modes get a largest displacement of 1 (tilts times the spread of the line)."""
-    modal = (line.place @ result.transformation)[:, boundary:]
-    tilts = np.array([name.endswith((".psi", ".theta")) for name in line.names])
-    lengths = np.where(tilts, _arm(line), 1.0)
-    sizes = np.max(np.abs(modal) * lengths[:, None], axis=0, initial=0.0)
-    return np.concatenate([np.ones(boundary), 1.0 / sizes])
-
-
-def _arm(line: SupportedLine) -> float:
-    """Length that makes a displacement of a tilt: root of tilt stiffness over radial stiffness at the ring."""
-    radial, tilt = (line.stiffness[line.at(name)[0], line.at(name)[0]] for name in ("ring.x", "ring.theta"))
-    return math.sqrt(tilt / radial)
-
-
-def _lag(line: SupportedLine, interior: Sequence[int]) -> float:
-    """Largest d/k of D v = (d/k) K v over the interior [s]; symmetric parts."""
-    at = np.ix_(interior, interior)
-    stiffness, damping = (0.5 * (m[at] + m[at].T) for m in (line.stiffness, line.damping))
-    lower = np.linalg.cholesky(stiffness)
-    half = np.linalg.solve(lower, damping)
-    return float(np.max(np.linalg.eigvalsh(np.linalg.solve(lower, half.T)), initial=0.0))

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from hdrive_mbs.errors import LawError
 from hdrive_mbs.expression import TraceError, Value, derivative, evaluate, record, variables
+from hdrive_mbs.network.coupling import Coupling
 from hdrive_mbs.network.elements import AppliedTorque, Claim, Connection
 from hdrive_mbs.network.moment import Moment, recording_moment
 from hdrive_mbs.network.network import Network
@@ -27,7 +28,7 @@ def check_claims(network: Network) -> None:
     What is taken from the coordinates, less the growth of the energy that the law says it stores,
     must not be negative at random moments of all magnitudes.
     """
-    elements = [element for element in network.elements if isinstance(element, (AppliedTorque, Connection))]
+    elements = [element for element in network.elements if isinstance(element, (AppliedTorque, Connection, Coupling))]
     claims = [claim for element in elements for claim in element.claims()]
     if not claims:
         return

@@ -291,7 +291,10 @@ class Draft:
         self._sources[name] = source
 
     def holding_torque(self, node: Node) -> Callable[[Moment], Value]:
-        """Torque [N m] that keeps a prescribed place on its motion:  J d2(angle)/dt2 - sum of the torques on it."""
+        """Torque [N m] that keeps a prescribed place on its motion:  J d2(angle)/dt2 - sum of the torques on it.
+
+        Leaves out what the unbalance of a whirling rotor asks for, m e times its lateral acceleration.
+        """
 
         def read(moment: Moment) -> Value:
             acceleration = gradient(gradient(self._motions[node.name]))(moment.time)
@@ -411,7 +414,7 @@ class Draft:
             if node_name == "ground" or not node.lateral or (place != node_name and place.endswith((".a", ".b"))):
                 continue
             station = self.station(place)
-            centre = node.mass.centre[:2] if node.is_rotor and place == node_name and any(node.mass.centre[:2]) else None
+            centre = node.mass.centre if node.is_rotor and place == node_name and any(node.mass.centre[:2]) else None
             channels += station_channels(place, {key: station.stretch(key) for key in LATERAL}, centre, node_name, node.sense)
         return channels
 

@@ -176,7 +176,7 @@ def constant_force(name: str, coordinate: str, value: float) -> AppliedTorque:
 
 
 def station_channels(
-    place: str, names: Mapping[str, Mapping[str, float]], centre: tuple[float, float] | None, spin: str, sense: int
+    place: str, names: Mapping[str, Mapping[str, float]], centre: tuple[float, float, float] | None, spin: str, sense: int
 ) -> list[Channel]:
     """Displacements and tilts of a place, its distance from the axis, and those of its centre of mass.
 
@@ -192,16 +192,19 @@ def station_channels(
     x, y = _sum(names["x"], "angles"), _sum(names["y"], "angles")
     channels.append(Channel(f"{place}.radial", "m", f"distance of the centre of {place} from the axis", lambda m: np.hypot(x(m), y(m))))
     if centre is not None:
-        ex, ey = centre
+        ex, ey, lever = centre
+        psi, theta = _sum(names["psi"], "angles"), _sum(names["theta"], "angles")
 
         def radial_of_mass(moment: Moment) -> Value:
             angle = sense * moment.angle(spin)
-            px = x(moment) + ex * np.cos(angle) - ey * np.sin(angle)
-            py = y(moment) + ey * np.cos(angle) + ex * np.sin(angle)
+            px = x(moment) + lever * theta(moment) + ex * np.cos(angle) - ey * np.sin(angle)
+            py = y(moment) - lever * psi(moment) + ey * np.cos(angle) + ex * np.sin(angle)
             return np.hypot(px, py)
 
         channels.append(
-            Channel(f"{place}.mass_centre_radial", "m", f"distance of the centre of mass of {place} from the axis", radial_of_mass)
+            Channel(
+                f"{place}.mass_centre_radial", "m", f"distance of the centre of mass of the body at {place} from the axis", radial_of_mass
+            )
         )
     return channels
 

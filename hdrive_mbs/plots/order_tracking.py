@@ -17,11 +17,11 @@ from hdrive_mbs.plots.look import house_look, legend_above, new_figure, number, 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-VISIBLE = 0.005
+VISIBLE = 0.05
 """Smallest largest amplitude of a track that is drawn by itself, as a share of the largest of all."""
 
 FAINT = 1e-3
-"""Amplitude below which a phase is not drawn, as a share of the largest of its track."""
+"""Amplitude below which a phase is not drawn, as a share of the largest of its track; none of a track that is not visible."""
 
 
 @plot.register
@@ -30,7 +30,7 @@ def plot_order_tracking(
 ) -> Axes:
     """Amplitude, 0-peak, over speed, and below it the phase against the angle of the reference; returns the top one.
 
-    tracks : which ("1 forward"); those that are visible if not given
+    tracks : which ("1 forward"); those of 5 % of the largest and more if not given
     logarithmic : amplitudes on a logarithmic scale
     With ``ax`` the amplitudes alone go there.
     """
@@ -46,7 +46,10 @@ def plot_order_tracking(
         figure = new_figure(7.2, 5.2)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[1.3, 1.0])
         _amplitudes(upper, result, chosen, logarithmic)
+        seen = _visible(result)
         for k, name in enumerate(chosen):
+            if name not in seen:
+                continue
             amplitude = result.amplitudes[:, result.tracks.index(name)]
             clear = np.abs(amplitude) > FAINT * float(np.max(np.abs(amplitude)))
             lower.plot(*_broken(np.abs(result.speeds), np.where(clear, _degrees(amplitude), np.nan)), **style(k))

@@ -52,7 +52,7 @@ def plot_waterfall(
         else:
             _map(ax, lines, result.speeds, amplitude, result.unit, fresh)
         wanted = orders if orders is not None else ((1.0, 2.0, -1.0) if result.two_sided else (1.0, 2.0))
-        _orders(ax, result, wanted, reach)
+        _orders(ax, result, wanted, reach, kind == "map")
         ax.set_xlim(-reach if result.two_sided else 0.0, reach)
         ax.set_ylabel(f"speed of {readable(result.reference)} [rad/s]")
         _names(ax, result, fresh)
@@ -106,12 +106,12 @@ def _stack(ax: Axes, result: Waterfall, lines: FloatArray, amplitude: FloatArray
         ax.fill_between(lines, base, base + scale * inner[k], color="white", linewidth=0.0, zorder=order)
         ax.plot(lines, base + scale * inner[k], color=COLOURS[0], linestyle="-", linewidth=0.7, zorder=order)
     bar = _round_down(0.5 * largest)
-    right, top = float(lines[-1]), float(speeds[-1] + HEIGHT * step)
+    right, top = float(lines[-1]), float(speeds[-1] + (HEIGHT - 0.5) * step)
     ax.plot([0.97 * right] * 2, [top - scale * bar, top], color="black", linestyle="-", linewidth=2.0, zorder=5.0)
     factor, unit = shown_unit(result.unit, bar)
     text = f"{number(factor * bar)}\u2009{unit}\n0-peak "
     ax.text(0.955 * right, top - 0.5 * scale * bar, text, ha="right", va="center", fontsize=8.5, zorder=5.0, bbox=PAPER)
-    ax.set_ylim(float(speeds[0]) - 0.5 * step, float(speeds[-1]) + (HEIGHT + 0.5) * step)
+    ax.set_ylim(float(speeds[0]) - 0.5 * step, float(speeds[-1]) + (HEIGHT + 1.0) * step)
 
 
 def _round_down(value: float) -> float:
@@ -132,7 +132,7 @@ def _map(ax: Axes, x: FloatArray, y: FloatArray, amplitude: FloatArray, unit: st
         ax.figure.figure.colorbar(mesh, ax=ax, label=f"amplitude, 0-peak [{unit}]", pad=0.02)
 
 
-def _orders(ax: Axes, result: Waterfall, orders: Sequence[float], reach: float) -> None:
+def _orders(ax: Axes, result: Waterfall, orders: Sequence[float], reach: float, below: bool) -> None:
     top, bottom = float(result.speeds[-1]), float(result.speeds[0])
     for order in orders:
         ends = np.array([bottom, top])
@@ -144,7 +144,10 @@ def _orders(ax: Axes, result: Waterfall, orders: Sequence[float], reach: float) 
             at[1] = np.copysign(reach, order)
         ax.plot(at, ends, color=GREY, linestyle="--", linewidth=1.0, zorder=4.0)
         options: dict[str, Any] = {"fontsize": 8.5, "color": "#333333", "bbox": PAPER, "zorder": 4.5}
-        ax.annotate(f"{order:g}x", (at[1], ends[1]), xytext=(0, 3), textcoords="offset points", ha="center", va="bottom", **options)
+        at_edge = abs(at[1]) >= 0.97 * reach
+        shift = (-4 if at[1] > 0.0 else 4, -4) if at_edge else (0, -4 if below else 3)
+        options |= {"ha": ("right" if at[1] > 0.0 else "left") if at_edge else "center", "va": "top" if at_edge or below else "bottom"}
+        ax.annotate(f"{order:g}x", (at[1], ends[1]), xytext=shift, textcoords="offset points", **options)
 
 
 def _names(ax: Axes, result: Waterfall, fresh: bool) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -119,7 +120,8 @@ def clock_finding(reference: Record, other: Record) -> Finding | None:
                 where="",
                 blocks=True,
                 text=(
-                    f"its clock differs from that of {reference.name!r} by {ends[0]:.4g} s at the start and {ends[1]:.4g} s at the end ({match}); "
+                    f"its clock differs from that of {reference.name!r} by {ends[0]:.4g} s at the start "
+                    f"and {ends[1]:.4g} s at the end ({match}); "
                     f"aligned(record, clock_match(reference, record, {mine_name!r}, {other_name!r})) corrects its times"
                 ),
             )
@@ -129,7 +131,7 @@ def clock_finding(reference: Record, other: Record) -> Finding | None:
 
 def _even(times: FloatArray, values: FloatArray, step: float) -> FloatArray:
     count = min(int((times[-1] - times[0]) / step) + 1, MOST_SAMPLES)
-    return np.interp(times[0] + step * np.arange(count), times, values)
+    return np.asarray(np.interp(times[0] + step * np.arange(count), times, values), float)
 
 
 def _lag(one: FloatArray, two: FloatArray, step: float, start_apart: float, largest: float) -> float | None:
@@ -154,7 +156,7 @@ def _first_guess(
     edges = np.linspace(start - lag, end - lag, STRETCHES + 1)
     wide = max(8.0 * step, 2e-3 * (end - start))
     centres, offsets = [], []
-    for first, last in zip(edges[:-1], edges[1:], strict=True):
+    for first, last in itertools.pairwise(edges):
         here = (y_times >= first) & (y_times <= last)
         there = (x_times >= first + lag - wide) & (x_times <= last + lag + wide)
         if here.sum() < 16 or there.sum() < 16:

@@ -9,11 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from hdrive_mbs.errors import ParameterError, UnitError, unknown_place
-from hdrive_mbs.records.formats.file_format import Column, Contents
-from hdrive_mbs.records.request import Request, is_time
+from hdrive_mbs.records.formats.file_format import Column, Contents, is_time
+from hdrive_mbs.records.request import Request
 from hdrive_mbs.records.si_units import conversion
-from hdrive_mbs.signals import FloatArray
-from hdrive_mbs.units import to_si
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -25,7 +23,7 @@ class Clock:
     column: Column | None = None
     step: float = 0.0
 
-    def times(self, request: Request) -> tuple[FloatArray, float, tuple[str, ...]]:
+    def times(self, request: Request) -> tuple[np.ndarray, float, tuple[str, ...]]:
         """Times [s], what the clock showed at time 0 [s], and notes."""
         if self.column is None:
             return self.step * np.arange(self.length), 0.0, (f"the file holds no time; an even step of {self.step:.6g} s was given",)
@@ -36,15 +34,16 @@ class Clock:
         scale = conversion(unit, where)
         if scale.unit != "s":
             raise UnitError(
-                f"{where}: unit {unit!r} is no unit of time; give the right one with units={{{self.column.name!r}: 's'}}, or another column with time='...'."
+                f"{where}: unit {unit!r} is no unit of time; "
+                f"give the right one with units={{{self.column.name!r}: 's'}}, or another column with time='...'."
             )
         values = self.column.values
         start = values[0]
         if np.isfinite(start) and abs(float(start)) * scale.factor > 1e6:  # a clock since 1970, say: keep its digits
-            times = np.asarray(values - start, dtype=float) * scale.factor
+            times = np.asarray((values - start) * scale.factor, dtype=np.float64)
             origin = float(start) * scale.factor
             return times, origin, (f"times count from the first sample, at which the clock showed {origin:.9g} s",)
-        return np.asarray(values, dtype=float) * scale.factor, 0.0, ()
+        return np.asarray(values * scale.factor, dtype=np.float64), 0.0, ()
 
 
 def by_clock(request: Request, contents: Contents) -> tuple[list[tuple[Clock, list[Column]]], list[str]]:
@@ -86,10 +85,14 @@ def _label(clock: Column) -> str:
 
 
 def _step(request: Request, columns: Sequence[Column]) -> float:
-    """A step that was given as text, like "0.2 ms"; else PlaceError for a column that does not exist."""
+    """A step or rate that was given as text, like "0.2 ms" or "5 kHz"; else PlaceError for a column that does not exist."""
     assert isinstance(request.time, str)
     if re.match(r"\s*[+-]?[\d.]", request.time):
-        return to_si(request.time, "s", f"{request.path}, time")
+        where = f"{request.path}, time = {request.time!r}"
+        given = conversion(request.time, where)
+        if given.unit not in ("s", "Hz"):
+            raise UnitError(f"{where}: the step of an even sampling is in s, or its rate in Hz.")
+        return given.factor if given.unit == "s" else 1.0 / given.factor
     raise unknown_place("time column", request.time, [column.name for column in columns][:60], str(request.path))
 
 

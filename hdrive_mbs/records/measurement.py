@@ -61,7 +61,8 @@ class Measurement:
 
     def __repr__(self) -> str:
         finite = self.values[np.isfinite(self.values)]
-        span = f"{finite.min():.6g} to {finite.max():.6g} {self.unit}" if len(finite) else "no finite value"
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        span = f"{finite.min():.6g} to {finite.max():.6g}{unit}" if len(finite) else "no finite value"
         to = f" -> {self.quantity}" if self.quantity else ""
-        floor = "" if self.floor is None else f", floor {self.floor:.3g} {self.unit}"
+        floor = "" if self.floor is None else f", floor {self.floor:.3g}{unit}"
         return f"{self.name} [{self.unit}]{to}: {len(self)} values, {span}{floor}"

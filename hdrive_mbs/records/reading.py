@@ -12,10 +12,12 @@ import numpy as np
 
 from hdrive_mbs.errors import FileFormatError, RecordError, UnitError, unknown_place
 from hdrive_mbs.records.collection import Records
-from hdrive_mbs.records.formats.file_format import Column, Contents, format_of, formats
+from hdrive_mbs.records.file_clocks import by_clock, flattened
+from hdrive_mbs.records.formats.file_format import Column, Contents, base_name, fits, format_of, formats
 from hdrive_mbs.records.measurement import Measurement
 from hdrive_mbs.records.record import Record
 from hdrive_mbs.records.repair import repaired
+from hdrive_mbs.records.request import Channels, Request, first_names
 from hdrive_mbs.records.si_units import conversion
 
 
@@ -37,7 +39,7 @@ def read_record(
         ``*`` stands for any text; every channel if not given
     units : {name: unit} where the file says none or a wrong one; ``*`` stands for any text; a unit may have a
         size ("3.83e-4 rad" for one count of an encoder)
-    time : name of the column with the time; or the step [s] (or text, "0.2 ms") of an even sampling
+    time : name of the column with the time; or the step [s] (or text, "0.2 ms", "5 kHz") of an even sampling
         that the file does not hold
     noise, resolution : {name: size} in SI units
     repair : arguments of ``repaired``, like {"gaps": "interpolate"}
@@ -52,7 +54,8 @@ def read_record(
     if len(records) > 1:
         listed = "; ".join(f"{item.name} ({len(item)} samples: {first_names(item.channels)})" for item in records)
         raise RecordError(
-            f"{path} holds channels with {len(records)} different times: {listed}. Read all with read_records(path), or some with channels=[...] or time='...'."
+            f"{path} holds channels with {len(records)} different times: {listed}. "
+            "Read all with read_records(path), or some with channels=[...] or time='...'."
         )
     record = records[0].replacing(name=name or Path(path).stem, run="")
     return _finished(record, noise, resolution, repair, refuse)
@@ -80,8 +83,10 @@ def read_records(
     found: list[Record] = []
     for path in files:
         found.extend(_read(path, channels, units or {}, time, lenient=len(files) > 1))
-    if not found:
-        raise unknown_place("channel", ", ".join(channels or ()), [path.name for path in files], "None of these files")
+    for pattern in Request.of(files[0], channels, {}, None).channels or ():
+        if not any(fits(pattern, name) or fits(pattern, base_name(name)) for record in found for name in record.channels):
+            known = sorted({name for record in found for name in record.channels})
+            raise unknown_place("channel", pattern, known, "None of the files has it; what was read of them")
     names = _run_names(files)
     found = [item.replacing(name=f"{names[item.source]}{item.name.removeprefix(item.run)}", run=names[item.source]) for item in found]
     made = []
@@ -101,7 +106,7 @@ def read_columns(
     """The columns of a table that has no time (amplitudes over speed, say), in SI units, by name."""
     file = Path(path)
     request = Request.of(file, channels, units or {}, None)
-    contents = format_of(file).read(file, request.wants)
+    contents = format_of(file).contents(file, request.wanted)
     flat = [one for column in contents.columns for one in flattened(column, max(column.values.shape)) if request.selects(one.name)]
     request.check_selected(flat, contents)
     return {item.name: item for item in _measured(flat, request)}
@@ -152,47 +157,55 @@ def _read(path: Path, channels: Channels | None, units: Mapping[str, str], time:
     """All records of one file: channels by the time that they share."""
     request = Request.of(path, channels, units, time)
     file_format = format_of(path)
-    contents = file_format.read(path, request.wants)
+    contents = file_format.contents(path, request.wanted)
     if not contents.columns and channels is None:
         skipped = "; ".join(f"{name}: {reason}" for name, reason in list(contents.skipped.items())[:10])
         raise FileFormatError(f"{path} ({file_format.name}) holds no column of numbers{f' ({skipped})' if skipped else ''}.")
     clocks, left = by_clock(request, contents)
     chosen = [(clock, [column for column in members if request.selects(column.name)]) for clock, members in clocks]
     chosen = [(clock, members) for clock, members in chosen if members]
-    if not (lenient and not chosen):
-        timeless = [name for name in left if request.channels is not None and request.selects(name)]
-        if timeless:
-            raise RecordError(
-                f"{path}: {timeless[0]!r} has no time of its own length beside it; name its time with time='...' or give its step, time=1e-3."
-            )
-        if not lenient:
-            request.check_selected([column for _, members in chosen for column in members], contents)
+    timeless = [name for name in left if request.channels is not None and request.selects(name)]
+    if timeless:
+        raise RecordError(
+            f"{path}: {timeless[0]!r} has no time of its own length beside it; "
+            "name its time with time='...' or give the step of an even sampling, time=1e-3 (s)."
+        )
+    if not lenient:
+        request.check_selected([column for _, members in chosen for column in members], contents)
         if not chosen:
             raise RecordError(_no_time(path, contents, left))
-    digest = hashlib.sha256()
-    with open(path, "rb") as file:
-        for block in iter(lambda: file.read(1 << 20), b""):
-            digest.update(block)
-    skipped = tuple(f"{name} was not read: {reason}" for name, reason in contents.skipped.items() if request.channels is None)
-    without = tuple(f"{name} was not read: no time of its length beside it" for name in left) if request.channels is None else ()
+    elif not chosen and channels is None:
+        raise RecordError(_no_time(path, contents, left))
+    digest = _digest(path)
+    notes = contents.notes
+    if request.channels is None:
+        notes += tuple(f"{name} was not read: {reason}" for name, reason in contents.skipped.items())
+        notes += tuple(f"{name} was not read: no time of its length beside it" for name in left)
     made = []
     for clock, members in chosen:
         times, origin, note = clock.times(request)
-        label = f":{clock.label}" if len(chosen) > 1 else ""
         measured = _measured(members, request)
         made.append(
             Record(
-                name=f"{path.stem}{label}",
+                name=f"{path.stem}{f':{clock.label}' if len(chosen) > 1 else ''}",
                 run=path.stem,
                 times=times,
                 channels={item.name: item for item in measured},
                 origin=origin,
-                notes=_shortened((*note, *contents.notes, *skipped, *without)),
+                notes=_shortened((*note, *notes)),
                 source=str(path),
-                sha256=digest.hexdigest(),
+                sha256=digest,
             )
         )
     return made
+
+
+def _digest(path: Path) -> str:
+    digest = hashlib.sha256()
+    with open(path, "rb") as file:
+        for block in iter(lambda: file.read(1 << 20), b""):
+            digest.update(block)
+    return digest.hexdigest()
 
 
 def _shortened(notes: tuple[str, ...]) -> tuple[str, ...]:
@@ -220,7 +233,8 @@ def _measured(columns: Sequence[Column], request: Request) -> list[Measurement]:
     if missing:
         some = ", ".join(f"{name!r}: '...'" for name in missing[:6])
         raise UnitError(
-            f"{request.path}: no unit for {first_names(missing)}; the file names none. Give it with units={{{some}{', ...' if len(missing) > 6 else ''}}}, "
+            f"{request.path}: no unit for {first_names(missing)}; the file names none. "
+            f"Give it with units={{{some}{', ...' if len(missing) > 6 else ''}}}, "
             "'1' for a plain number, or leave the channel out with channels=[...]."
         )
     made = []

@@ -150,7 +150,8 @@ class Record:
         if len(self) < 2 or not np.all(np.diff(self.times) > 0.0):
             reason = f"has {len(self)} samples" if len(self) < 2 else "has times that do not rise"
             raise RecordError(
-                f"Record {self.name!r} {reason}; {what} needs at least two samples in order. Use repaired(record, order='sort', duplicates='first')."
+                f"Record {self.name!r} {reason}; {what} needs at least two samples in order. "
+                "Use repaired(record, order='sort', duplicates='first')."
             )
         return self
 
@@ -180,7 +181,8 @@ class Record:
                 place = channel.quantity.partition(".")[0]
                 near = [name for name in known if name.partition(".")[0] == place] or sorted({name.partition(".")[0] for name in known})
                 raise PlaceError(
-                    f"Record {self.name!r} maps {channel.name!r} to {channel.quantity!r}, which is no channel of it. {owner} has: {', '.join(near)}."
+                    f"Record {self.name!r} maps {channel.name!r} to {channel.quantity!r}, which is no channel of it. "
+                    f"{owner} has: {', '.join(near)}."
                 )
             unit = known[channel.quantity]
             if channel.unit != unit:
@@ -234,7 +236,8 @@ class Record:
         inside = np.asarray((self.times >= start) & (self.times <= end))
         if not inside.any():
             raise RecordError(
-                f"Record {self.name!r} has no sample between {start:g} s and {end:g} s; it goes from {np.nanmin(self.times):g} s to {np.nanmax(self.times):g} s."
+                f"Record {self.name!r} has no sample between {start:g} s and {end:g} s; "
+                f"it goes from {np.nanmin(self.times):g} s to {np.nanmax(self.times):g} s."
             )
         return self.taking(inside)
 

@@ -104,7 +104,8 @@ def _with_units(record: Record, units: Mapping[str, str] | str) -> Record:
         real = conversion(given, where)
         if real.unit != channel.unit:
             raise UnitError(
-                f"{where}: it is in {channel.unit}, so its numbers cannot be in {given!r}; read the file again with units={{{name!r}: {given!r}}}."
+                f"{where}: it is in {channel.unit}, so its numbers cannot be in {given!r}; "
+                f"read the file again with units={{{name!r}: {given!r}}}."
             )
         factor = real.factor
         new = channel.replacing(
@@ -144,7 +145,8 @@ def _finite(record: Record, way: str, longest: int) -> Record:
                 else "the first or last sample, which has only one neighbour"
             )
             raise RecordError(
-                f"Record {record.name!r}: {channel.name!r} is not finite over {reason}; use not_finite='drop', record.between(start, end), or longest={run}."
+                f"Record {record.name!r}: {channel.name!r} is not finite over {reason}; "
+                f"use not_finite='drop', record.between(start, end), or longest={run}."
             )
         values = channel.values.copy()
         values[bad] = np.interp(record.times[bad], record.times[~bad], values[~bad])
@@ -201,14 +203,15 @@ def _filled(record: Record, longest: int) -> Record:
         at = float(record.times[int(np.argmax(missing))])
         raise RecordError(
             f"Record {record.name!r}: the gap at t = {at:.6g} s lacks {int(missing.max())} samples, more than longest = {longest}; "
-            f"a straight line there is no measurement. Take parts with record.between(start, end), gaps='keep', or longest={int(missing.max())}."
+            f"a straight line there is no measurement. "
+            f"Take parts with record.between(start, end), gaps='keep', or longest={int(missing.max())}."
         )
     pieces = [np.linspace(record.times[i], record.times[i + 1], missing[i] + 2)[1:-1] for i in np.flatnonzero(missing)]
     added = np.concatenate(pieces)
     times = np.sort(np.concatenate((record.times, added)))
 
     def on_lines(values: FloatArray) -> FloatArray:
-        return np.interp(times, record.times, values)
+        return np.asarray(np.interp(times, record.times, values), float)
 
     channels = {channel.name: channel.replacing(values=on_lines(channel.values)) for channel in record}
     text = f"{int(missing.sum())} missing samples in {len(pieces)} gaps put on straight lines, at most {int(missing.max())} in a row"

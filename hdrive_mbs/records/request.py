@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from hdrive_mbs.errors import FileFormatError, unknown_place
-from hdrive_mbs.records.formats.file_format import Column, Contents, format_of
-
-TIMES = frozenset({"t", "time", "times", "zeit", "timestamp", "timestamps", "time_stamp", "elapsed_time", "time_s", "sec", "seconds"})
-"""Names of columns that are taken for the time, in lower case."""
+from hdrive_mbs.records.formats.file_format import Column, Contents, Wanted, base_name, fits, format_of, is_time
 
 Channels = Mapping[str, str | None] | Sequence[str]
 
@@ -32,11 +28,12 @@ class Request:
         chosen = None if channels is None else dict(channels) if isinstance(channels, Mapping) else dict.fromkeys(channels)
         return cls(path=path, channels=chosen, units=units, time=time)
 
-    def wants(self, name: str) -> bool:
-        """Whether a column is needed: chosen, or part of a chosen matrix, or a time."""
-        if self.channels is None or name == self.time or is_time(name):
-            return True
-        return any(fits(pattern, name) or fits(re.sub(r"\[\d+\]$", "", pattern), name) for pattern in self.channels)
+    @property
+    def wanted(self) -> Wanted:
+        """Which columns the reader has to give: the chosen ones and the time."""
+        if self.channels is None:
+            return Wanted()
+        return Wanted((*self.channels, *([self.time] if isinstance(self.time, str) else [])))
 
     def selects(self, name: str) -> bool:
         """Whether a channel is chosen."""
@@ -63,7 +60,7 @@ class Request:
 
     def check_selected(self, found: Iterable[Column], contents: Contents) -> None:
         """Raise PlaceError for a chosen channel that the file lacks, FileFormatError for one that cannot be read."""
-        names = [column.name for column in found]
+        names = [*(column.name for column in found), *(column.name for column in contents.columns if column.clock or is_time(column.name))]
         for pattern in self.channels or ():
             if any(fits(pattern, name) or fits(pattern, base_name(name)) for name in names):
                 continue
@@ -73,23 +70,9 @@ class Request:
             raise unknown_place("channel", pattern, self._all_names(), str(self.path))
 
     def _all_names(self) -> list[str]:
-        everything = format_of(self.path).read(self.path, lambda name: True)
+        everything = format_of(self.path).contents(self.path, Wanted())
         names = sorted(column.name for column in everything.columns)
         return names if len(names) <= 60 else [*names[:60], f"... ({len(names)} in all)"]
-
-
-def fits(pattern: str, name: str) -> bool:
-    if pattern == name:
-        return True
-    return "*" in pattern and re.fullmatch(".*?".join(re.escape(part) for part in pattern.split("*")), name, re.S) is not None
-
-
-def base_name(name: str) -> str:
-    return re.sub(r"\[\d+\]$", "", name)
-
-
-def is_time(name: str) -> bool:
-    return re.split(r"[./]", name)[-1].strip().lower().replace(" ", "_") in TIMES
 
 
 def first_names(names: Iterable[str]) -> str:

@@ -68,7 +68,7 @@ def resampled(record: Record, step: float) -> Record:
 def even_times(record: Record, step: float) -> FloatArray:
     """From the first time on, ``step`` apart, not beyond the last one."""
     count = int(np.floor(record.duration / step * (1.0 + 1e-12))) + 1
-    return np.minimum(record.times[0] + step * np.arange(count), record.times[-1])
+    return np.asarray(np.minimum(record.times[0] + step * np.arange(count), record.times[-1]), float)
 
 
 def at(times: FloatArray, values: FloatArray, wanted: FloatArray) -> FloatArray:

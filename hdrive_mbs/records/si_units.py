@@ -34,7 +34,7 @@ _SPELLINGS = (
     (re.compile(r"[₂²]"), "^2"),
     (re.compile(r"³"), "^3"),
     (re.compile(r"[µμ]"), "u"),
-    (re.compile(r"[·⋅×]"), "*"),
+    (re.compile(r"[·⋅]"), "*"),
     (re.compile(r"\b([munkM]?N)(c?m|mm)(s?)\b"), lambda m: "*".join(part for part in m.groups() if part)),
     (re.compile(r"\bkgm"), "kg*m"),
     (re.compile(r"\b(s|m|rad|deg)([23])\b"), r"\1^\2"),
@@ -72,7 +72,7 @@ def conversion(text: str, where: str) -> Conversion:
         if inner.offset or size == 0.0:
             raise UnitError(f"{where}: unit {text!r} cannot be scaled; write it as a size and a unit, like '3.83e-4 rad'.")
         return Conversion(inner.unit, inner.factor * size)
-    if given in ("1", "-", "–", "none", "dimensionless"):
+    if given in ("1", "-", "none", "dimensionless"):
         return Conversion("1", 1.0)
     if given.lower() in ("degc", "°c", "deg c", "celsius"):
         return Conversion("K", 1.0, 273.15)
@@ -81,7 +81,7 @@ def conversion(text: str, where: str) -> Conversion:
         raise UnitError(f"{where}: unit {text!r} is ambiguous: {meaning}.")
     spelled = given
     for pattern, replacement in _SPELLINGS:
-        spelled = pattern.sub(replacement, spelled)  # type: ignore[arg-type]
+        spelled = pattern.sub(replacement, spelled)
     unit = _si_of(spelled, where)
     if unit is None:
         raise UnitError(

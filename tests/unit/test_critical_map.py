@@ -83,6 +83,21 @@ def test_at_each_critical_speed_a_natural_frequency_of_the_turning_line_is_the_s
         assert all(whirls_with_the_spin(scene, float(speed)) < 1e-7 for speed in result.speeds[0])
 
 
+def test_the_campbell_diagram_of_the_undamped_line_has_the_same_critical_speeds() -> None:
+    scene = build()
+    undamped = [path for path in scene.parameters() if "damping" in path]
+    scene = scene.replacing(dict.fromkeys(undamped, 0.0))
+    foundation = [f"bearing_{name}.housing.stiffness_{key}" for name in "ab" for key in "xy"]
+    mapped = hm.critical_speed_map(scene, [6e6], paths=foundation)
+    diagram = hm.campbell(scene, np.linspace(0.0, 1000.0, 41))
+    for whirl in ("forward", "backward"):
+        found = [speed for speed, kind in zip(diagram.critical_speeds, diagram.critical_whirl, strict=True) if kind == whirl]
+        expected = [speed for speed in branch(mapped, whirl)[0] if speed < 1000.0]
+        # rounding of a first-order system with eigenvalues up to 1e5 1/s
+        assert found == pytest.approx(expected, rel=1e-6)
+        assert len(found) > 1
+
+
 def test_unlike_planes_give_mixed_whirl_with_the_same_critical_speeds_as_the_turning_line() -> None:
     paths = ["bearing_a.housing.stiffness_x", "bearing_b.housing.stiffness_x"]
     scene = build()
@@ -175,7 +190,7 @@ def test_wrong_arguments_are_refused(stiffness: list[float], options: dict[str, 
 
 
 def test_unknown_bearings_are_named() -> None:
-    with pytest.raises(PlaceError, match="No Bearing part 'bearng'. This scene has: bearing"):
+    with pytest.raises(PlaceError, match=r"No Bearing part 'bearng'. This scene has: bearing"):
         hm.critical_speed_map(disc(), [1e6], parts=["bearng"])
 
 

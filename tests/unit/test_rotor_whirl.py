@@ -113,6 +113,16 @@ def test_the_mass_centre_channel_follows_the_mass_centre() -> None:
     np.testing.assert_allclose(response.values["d.mass_centre_radial"], np.abs(path), rtol=1e-8)
 
 
+def test_the_mass_centre_of_two_joined_bodies_lies_between_them() -> None:
+    # a heavy ring at 0.2 m behind: the common centre is 0.1 m from the disc, e/2 off the axis, and follows the tilts
+    rotor = DISC.replacing(eccentricity=3e-4, angle=0.7)
+    scene = line("joined", {"d": rotor, "arm": hm.RigidSection(length=0.2), "ring": bearing(0.0, mass=8.0)}, ("d", "arm", "ring"))
+    start = {"d.x": 1e-3, "d.y": 2e-3, "d.theta": 3e-3, "d.psi": 4e-3}
+    response = hm.simulate(scene, 1e-4, initial=start)
+    x, y = 1e-3 + 0.1 * 3e-3 + 1.5e-4 * math.cos(0.7), 2e-3 - 0.1 * 4e-3 + 1.5e-4 * math.sin(0.7)
+    assert response.values["d.mass_centre_radial"][0] == pytest.approx(math.hypot(x, y), rel=1e-12)
+
+
 # -- behind a gear that turns backwards ----------------------------------------------------------------
 
 

@@ -20,8 +20,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import hdrive_mbs as hm
+from hdrive_mbs.components.flexible_coupling import FlexibleCoupling
+from hdrive_mbs.components.improved_section import ImprovedSection
 from hdrive_mbs.components.rigid_coupling import RigidCoupling
 from hdrive_mbs.components.sensor import Sensor
+from hdrive_mbs.components.simplified_section import SimplifiedSection
 from hdrive_mbs.components.speed_controller import SpeedController
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import FileFormatError, HdriveError, ParameterError, PlaceError, SceneError, UnitError
@@ -157,10 +160,6 @@ def rotor_scene(law: hm.BearingLaw) -> hm.Scene:
 
 def supported_scene() -> hm.Scene:
     """Two shafts on a coupling, each over a bearing that is no station."""
-    from hdrive_mbs.components.flexible_coupling import FlexibleCoupling
-    from hdrive_mbs.components.improved_section import ImprovedSection
-    from hdrive_mbs.components.simplified_section import SimplifiedSection
-
     half = hm.ShaftSection(length=0.1, diameter=0.03, youngs_modulus=2.1e11, shear_modulus=8.1e10)
     held = hm.Bearing(
         law=LINEAR, mass=0.3, polar_inertia=3e-4, transverse_inertia=2e-4, housing=hm.Housing.isotropic(mass=2.0, stiffness=5e6)

@@ -98,9 +98,9 @@ def test_a_foreseen_error_ends_with_exit_code_2_and_one_line() -> None:
 def test_bode_shows_amplitudes_0_peak_and_lags_of_what_was_calculated() -> None:
     result = hm.unbalance_response(build(), np.linspace(0.0, 1000.0, 101))
     upper = hm.plot(result, places=["rotor_1"])
-    # 1.3 mm at the critical speed, which is between two of these speeds
-    assert upper.get_ylabel() == "major semi-axis, 0-peak [µm]"
-    factor = 1e6
+    # 1.3 mm at 370 rad/s
+    assert upper.get_ylabel() == "major semi-axis, 0-peak [mm]"
+    factor = 1e3
     curve = next(line for line in upper.lines if line.get_label() == "rotor 1")
     np.testing.assert_allclose(curve.get_ydata(), factor * result["rotor_1"].major)
     lower = upper.figure.axes[1]

@@ -254,6 +254,31 @@ def test_a_rotor_on_a_prescribed_shaft_and_one_behind_a_gear_whirl_at_their_own_
     assert y[0] == pytest.approx(y[-1], abs=1e-12)
 
 
+def test_unbalance_of_a_rotor_lags_by_the_twist_of_a_loaded_shaft() -> None:
+    twist, w = 0.2, 300.0
+    shaft = hm.ShaftSection(length=0.5, diameter=0.02, youngs_modulus=2.1e11, shear_modulus=8.1e10, damping=1e-5)
+    torque = twist * 8.1e10 * math.pi * 0.02**4 / 32.0 / 0.5
+    law = hm.LinearBearing.isotropic(radial=1e6, damping=200.0, axial=1e6, tilt=1e4, tilt_damping=1.0)
+    rotor = {"mass": 5.0, "polar_inertia": 0.03, "transverse_inertia": 0.02}
+    parts: dict[str, Any] = {
+        "drive": hm.DriveTorque(characteristic=lambda speed: torque + 0.0 * speed),
+        "one": hm.Rotor(eccentricity=1e-6, angle=0.3, **rotor),
+        "front": hm.Bearing(law=law),
+        "shaft": shaft,
+        "two": hm.Rotor(eccentricity=2e-6, angle=2.0, **rotor),
+        "rear": hm.Bearing(law=law),
+        "load": hm.Load(inertia=1e-4, torque=hm.ConstantTorque(value=torque)),
+    }
+    scene = hm.Scene(name="loaded", parts=parts, connections=[("drive", "one", "front", "shaft", "two", "rear", "load")])
+    result = hm.unbalance_response(scene, [w])
+    turned = hm.unbalance_response(scene.replacing({"load.torque": hm.ConstantTorque(value=0.0), "two.angle": 2.0 - twist}), [w])
+    np.testing.assert_allclose(result.x, turned.x, rtol=1e-8)
+    initial = started_steadily(result, scene) | {"two.angle": -twist}
+    run = hm.simulate(scene, 6.0 * math.pi / w, solver=FINE, initial_speed=w, initial=initial)
+    # damping of 200 N s/m over circles of 1e-6 m takes 1e-8 of the spin
+    assert largest_difference(result, run, result.places) < 1e-6
+
+
 # -- places, trial masses, balancing -----------------------------------------------------------------
 def test_a_trial_mass_does_what_an_eccentricity_of_the_same_size_does() -> None:
     speeds = [200.0, 370.0, 800.0]
@@ -329,12 +354,24 @@ def test_a_cubic_bearing_counts_with_its_slope_at_the_static_deflection() -> Non
     scene = hm.Scene(name="heavy", parts={**scene.parts, "gravity": hm.Gravity()}, connections=scene.connections)
     result = hm.unbalance_response(scene, [500.0, 600.0])
     # K y + K3 y^3 = -m g
-    sag = float(np.real([r for r in np.roots([cubic, 0.0, K, M * 9.80665]) if abs(r.imag) < 1e-12][0]))
+    sag = float(np.real(next(r for r in np.roots([cubic, 0.0, K, M * 9.80665]) if abs(r.imag) < 1e-12)))
     w = np.array([500.0, 600.0])
     # the static deflection is found to 1e-10 of the weight
     np.testing.assert_allclose(result["rotor"].x, closed(w), rtol=1e-8)
     np.testing.assert_allclose(result["rotor"].y, -1j * closed(w, K + 3.0 * cubic * sag**2), rtol=1e-8)
-    assert "forces at rotor are not linear: linearised about the static deflection at each speed" in result.status
+    assert "forces at rotor are not linear and were linearised about the static deflection at each speed" in result.status
+
+
+@pytest.mark.parametrize("eccentricity", [1e-9, 1e-6])
+def test_the_status_tells_by_how_much_whirl_bends_a_law(eccentricity: float) -> None:
+    cubic, w = 4e15, 500.0
+    law = hm.PowerBearing.isotropic(power_radial=cubic, radial=K, damping=C, axial=1e6, tilt=K_TILT)
+    result = hm.unbalance_response(disc(law=law, eccentricity=eccentricity), [w])
+    # without weight the slope K + 3 K3 x^2 grows from K by 3 K3 x^2/K; four instants of a turn see the largest x within cos(45 degrees)
+    largest = 3.0 * cubic * float(result["rotor"].major[0]) ** 2 / K
+    text = result.status.partition("they change a stiffness by ")[2]
+    assert 0.49 * largest <= float(text.partition(" %")[0]) / 100.0 <= 1.01 * largest
+    assert ("simulate that speed" in text) == (largest > 0.1)
 
 
 def test_a_bearing_from_a_table_has_at_each_speed_the_coefficients_of_that_speed() -> None:
@@ -353,6 +390,7 @@ def test_a_bearing_from_a_table_has_at_each_speed_the_coefficients_of_that_speed
     k, c = 1e6 + 2e6 * share, C * (1.0 + share)
     np.testing.assert_allclose(result["rotor"].x, closed(w, k, c), rtol=CLOSED, atol=1e-20)
     np.testing.assert_allclose(result.force("bearing").x, (k + 1j * c * w) * closed(w, k, c), rtol=CLOSED, atol=1e-15)
+    assert result.status == "complete; coefficients at rotor change with speed and are those of each speed"
 
 
 # -- stability ---------------------------------------------------------------------------------------
@@ -382,7 +420,7 @@ def test_an_unstable_line_is_refused_with_the_speed_from_which_it_is() -> None:
     assert found == pytest.approx(onset, rel=5e-6)
     assert "grows with" in str(caught.value)
     assert "rotating_damping" in str(caught.value)
-    stable = hm.unbalance_response(scene, SPEEDS[SPEEDS < onset])
+    stable = hm.unbalance_response(scene, SPEEDS[onset > SPEEDS])
     # F_x = k x + b w y with Y = -i X: k - i b w
     w = stable.speeds
     expected = M * E * np.exp(1j * ANGLE) * w**2 / (K - 1j * C * W / onset * w - M * w**2 + 1j * C * w)
@@ -516,10 +554,17 @@ def test_a_balanced_line_and_one_that_only_turns_are_refused() -> None:
 
 def test_wrong_places_and_trial_masses_are_named() -> None:
     result = hm.unbalance_response(disc(), [500.0])
-    with pytest.raises(PlaceError, match="No place 'roter'. This response has: rotor, bearing"):
+    with pytest.raises(PlaceError, match=r"No place 'roter'\. This response has: rotor, bearing"):
         result["roter"]
-    with pytest.raises(PlaceError, match="No turning place 'roter'. This scene has: rotor, bearing"):
+    with pytest.raises(PlaceError, match=r"No turning place 'roter'\. This scene has: rotor, bearing"):
         hm.unbalance_response(disc(), [500.0], extra={"roter": (1e-5, 0.0)})
+    with_motor = hm.Scene(
+        name="driven",
+        parts={**disc().parts, "motor": hm.Inertia(inertia=1.0), "gear": hm.Shaft(stiffness=1e3)},
+        connections=[("motor", "gear", "rotor"), ("rotor", "bearing")],
+    )
+    with pytest.raises(PlaceError, match=r"No turning place 'motor'\. This scene has: rotor, bearing"):
+        hm.unbalance_response(with_motor, [500.0], extra={"motor": (1e-5, 0.0)})
     with pytest.raises(ParameterError, match=r"extra\['rotor'\] = \(-1e-05 kg m, 0 rad\)"):
         hm.unbalance_response(disc(), [500.0], extra={"rotor": (-1e-5, 0.0)})
     with pytest.raises(ParameterError, match="give \\(mass times radius"):

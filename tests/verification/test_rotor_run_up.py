@@ -267,7 +267,9 @@ def coasting(scene: hm.Scene) -> hm.Scene:
 @pytest.mark.parametrize("speed", [0.0, 500.0, 1000.0])
 def test_damped_modes_are_those_of_the_reference(name: str, speed: float) -> None:
     network = coasting(CASES[name].scene()).network()
-    found = [root for root in roots(linear_system(network, LineMatrices(network), speed)) if root.imag > 0.14 * abs(root) and root.imag > 1.0]
+    found = [
+        root for root in roots(linear_system(network, LineMatrices(network), speed)) if root.imag > 0.14 * abs(root) and root.imag > 1.0
+    ]
     found = sorted((root for root in found if root.imag < 4000.0), key=lambda root: root.imag)
     wanted = values.load()[name]["modes"][f"{speed:.0f}"]
     assert [root.imag for root in found] == pytest.approx([mode["frequency"] for mode in wanted], rel=1e-8)

@@ -35,7 +35,8 @@ def second_clocks(record: Record) -> Iterator[Finding]:
                 channel=channel.name,
                 where="",
                 text=(
-                    f"this clock gains {1e6 * (rate - 1.0):.4g} us each second on the time of the record ({apart:.4g} s over {record.duration:.4g} s, "
-                    f"scatter {scatter:.3g} s); channels stamped by it belong in a record with time={channel.name!r}"
+                    f"this clock gains {1e6 * (rate - 1.0):.4g} us each second on the time of the record "
+                    f"({apart:.4g} s over {record.duration:.4g} s, scatter {scatter:.3g} s); "
+                    f"channels stamped by it belong in a record with time={channel.name!r}"
                 ),
             )

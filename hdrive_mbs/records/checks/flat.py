@@ -76,7 +76,8 @@ def _stuck(record: Record, channel: Measurement, starts: np.ndarray, lengths: np
     outside = np.ones(len(record), dtype=bool)
     outside[inside] = False
     reason = ""
-    if _noisy(channel.values[:begin]) or _noisy(channel.values[begin + length :]):
+    near = 4 * STUCK_SAMPLES
+    if _noisy(channel.values[max(0, begin - near) : begin]) or _noisy(channel.values[begin + length : begin + length + near]):
         reason = "its noise is gone"
     else:
         for other in record:
@@ -90,20 +91,28 @@ def _stuck(record: Record, channel: Measurement, starts: np.ndarray, lengths: np
             where=f"t = {record.times[begin]:.6g} s to {record.times[begin + length - 1]:.6g} s",
             blocks=True,
             text=(
-                f"stands at {channel.values[begin]:.6g} {channel.unit} for {length} samples from t = {record.times[begin]:.6g} s while {reason}; "
+                f"stands at {channel.values[begin]:.6g} {channel.unit} for {length} samples "
+                f"from t = {record.times[begin]:.6g} s while {reason}; "
                 "stuck='drop' leaves the channel out, stuck='keep' keeps it, record.between(start, end) takes a part without"
             ),
         )
 
 
 def _noisy(values: FloatArray) -> bool:
-    """Whether the second differences change their sign as often as those of noise (2/3), not as those of a smooth signal."""
+    """Whether values scatter by more than one step of rounding, so that they would not stand still at rest.
+
+    Second differences of noise change their sign two times out of three, and have sqrt(6) times its
+    standard deviation; rounding alone scatters by 0.29 steps.
+    """
     if len(values) < STUCK_SAMPLES:
         return False
     steps = np.diff(values)
     second = np.diff(steps)
-    moving = np.mean(steps != 0.0) > 0.5
-    return bool(moving and np.mean(second[1:] * second[:-1] < 0.0) > 0.4)
+    moved = np.abs(steps[steps != 0.0])
+    if len(moved) < 0.5 * len(steps):
+        return False
+    noise = float(np.std(second)) / np.sqrt(6.0)
+    return bool(noise > moved.min() and np.mean(second[1:] * second[:-1] < 0.0) > 0.4)
 
 
 def _should_move(values: FloatArray, other: FloatArray, inside: slice, outside: np.ndarray) -> bool:
@@ -142,7 +151,8 @@ def _saturated(record: Record, channel: Measurement, starts: np.ndarray, lengths
                 where=f"t = {record.times[begin]:.6g} s",
                 blocks=True,
                 text=(
-                    f"cut off at its {word} value {extreme:.6g} {channel.unit} in {len(cut)} stretches, {count} samples, first at t = {record.times[begin]:.6g} s; "
+                    f"cut off at its {word} value {extreme:.6g} {channel.unit} in {len(cut)} stretches, {count} samples, "
+                    f"first at t = {record.times[begin]:.6g} s; "
                     "saturated='drop' leaves the channel out, saturated='keep' keeps it (right for a command that is limited)"
                 ),
             )

@@ -74,13 +74,17 @@ def _duplicates(times: np.ndarray, same: np.ndarray) -> Finding:
     coarse = ""
     if same.mean() > 0.2:
         even = (times[-1] - times[0]) / (len(times) - 1)
-        coarse = f". So many look like a time that was written with too few digits; if the sampling is even, read with time={even:.6g} (step in s)"
+        coarse = ". So many look like a time that was written with too few digits; if the sampling is even, "
+        coarse += f"read with time={even:.6g} (step in s)"
     return Finding(
         kind="duplicates",
         channel="",
         where=f"t = {times[first]:.6g} s",
         blocks=True,
-        text=f"{int(same.sum())} samples have the time of the one before, first at {times[first]:.9g} s; duplicates='first' or 'mean' leaves one{coarse}",
+        text=(
+            f"{int(same.sum())} samples have the time of the one before, first at {times[first]:.9g} s; "
+            f"duplicates='first' or 'mean' leaves one{coarse}"
+        ),
     )
 
 
@@ -97,8 +101,8 @@ def _steps(times: np.ndarray, steps: np.ndarray, step: float) -> Iterator[Findin
             blocks=True,
             text=(
                 f"{int(long.sum())} gaps, {missing} samples missing, the longest {steps[worst]:.6g} s from t = {start:.6g} s "
-                f"(usual step {step:.6g} s); gaps='interpolate' fills short ones with straight lines, gaps='keep' leaves the samples as they are, "
-                "record.between(start, end) takes a part without"
+                f"(usual step {step:.6g} s); gaps='interpolate' fills short ones with straight lines, gaps='keep' leaves the samples "
+                "as they are, record.between(start, end) takes a part without"
             ),
         )
     usual = steps if long.mean() > SCATTERED else steps[~long]

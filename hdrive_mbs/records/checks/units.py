@@ -48,8 +48,13 @@ _WHOLE_IN = {
 }
 
 _KIND_WORDS = frozenset(
-    ["angle", "ang", "position", "pos", "phi", "theta", "turn", "rotation", "speed", "velocity", "vel", "omega", "w", "rate", "acceleration", "acc", "accel", "alpha", "rad", "deg", "rpm", "s", "per", "sec", "mm", "um", "displacement", "disp", "x", "dot"]
+    [
+        *("angle", "ang", "position", "pos", "phi", "theta", "turn", "rotation", "displacement", "disp"),
+        *("speed", "velocity", "vel", "omega", "w", "rate", "dot", "acceleration", "acc", "accel", "alpha"),
+        *("rad", "deg", "rpm", "mm", "um"),
+    ]
 )
+"""Words of a name that tell the kind or unit, not the place."""
 
 
 def contradicting_units(record: Record) -> Iterator[Finding]:
@@ -91,7 +96,8 @@ def _judged(whole: Measurement, rate: Measurement, ratio: float, together: bool)
     if not causes and not together:
         return None  # two places with a gear between them may have any ratio
     if causes:
-        text = f"{whole.name} grows {ratio:.4g} times as much as the integral of {rate.name}; as if {' or '.join(causes)}. units='keep' leaves it as it is"
+        text = f"{whole.name} grows {ratio:.4g} times as much as the integral of {rate.name}; as if {' or '.join(causes)}. "
+        text += "units='keep' leaves it as it is"
     elif _near(ratio, -1.0):
         text = f"{whole.name} falls where the integral of {rate.name} rises: their positive senses are opposite"
     else:
@@ -112,7 +118,8 @@ def _same_place(one: Measurement, other: Measurement) -> bool:
 
 def _place_words(name: str) -> tuple[str, ...]:
     """``act_vel_mot_deg_per_s[1]`` -> (act, mot, 1): what is left without the words for kind and unit."""
-    words = re.findall(r"[a-z]+|\d+", re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower())
+    parted = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
+    words = re.findall(r"[a-z]+|\d+", re.sub(r"_per_(?:s|sec|min)\d?(?![a-z])", "", parted))
     return tuple(word for word in words if word not in _KIND_WORDS)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib
+import importlib.util
 import os
 import pkgutil
 import re
@@ -50,18 +51,61 @@ class Contents:
     notes: tuple[str, ...] = ()
 
 
-Wanted = Callable[[str], bool]
-"""Whether a column of that name is asked for; a reader may leave out the others."""
+TIMES = frozenset({"t", "time", "times", "zeit", "timestamp", "timestamps", "time_stamp", "elapsed_time", "time_s", "sec", "seconds"})
+"""Names of columns that are taken for the time, in lower case."""
+
+
+def is_time(name: str) -> bool:
+    """Whether a name, or the last part of a path, is one of TIMES."""
+    return re.split(r"[./]", name)[-1].strip().lower().replace(" ", "_") in TIMES
+
+
+def fits(pattern: str, name: str) -> bool:
+    """Whether a name is the pattern; ``*`` stands for any text."""
+    if pattern == name:
+        return True
+    return "*" in pattern and re.fullmatch(".*?".join(re.escape(part) for part in pattern.split("*")), name, re.S) is not None
+
+
+def base_name(name: str) -> str:
+    """``angle[2]``, one channel of a matrix -> ``angle``."""
+    return re.sub(r"\[\d+\]$", "", name)
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Which columns are asked for; a reader may leave out the others.  All if there are no patterns."""
+
+    patterns: tuple[str, ...] | None = None
+
+    def __call__(self, name: str) -> bool:
+        if self.patterns is None or is_time(name):
+            return True
+        return any(fits(pattern, name) or fits(base_name(pattern), name) for pattern in self.patterns)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Format:
-    """A file format: its name, how to know it by its first bytes or suffix, and its reader."""
+    """A file format: its name, how to know it by its first bytes or suffix, and its reader.
+
+    needs : (packages to import, what they read): optional ones, which may not be installed
+    apart : the reader runs in a process of its own, because its library can crash on a damaged file
+    """
 
     name: str
     suffixes: tuple[str, ...]
     recognises: Callable[[bytes], bool]
     read: Callable[[Path, Wanted], Contents]
+    needs: tuple[str, ...] = ()
+    apart: bool = False
+
+    def contents(self, path: Path, wanted: Wanted) -> Contents:
+        """The columns of a file.  Raises FileFormatError for a missing package or a file that cannot be read."""
+        from hdrive_mbs.records.formats.apart import read_apart
+
+        for name in self.needs:
+            require_package(name, self.name, path)
+        return read_apart(self, path, wanted) if self.apart else self.read(path, wanted)
 
 
 @functools.cache
@@ -102,15 +146,12 @@ def format_of(path: Path) -> Format:
     raise FileFormatError(f"{path}: neither its first bytes nor its suffix {path.suffix!r} say what it is. Known formats: {known}.")
 
 
-def package(name: str, what: str, path: Path) -> Any:
-    """An optional package, or a FileFormatError that says how to install it."""
-    try:
-        return importlib.import_module(name)
-    except ImportError:
-        root = name.partition(".")[0]
+def require_package(name: str, what: str, path: Path) -> None:
+    """Raise FileFormatError, with the command that installs it, when an optional package is missing."""
+    if importlib.util.find_spec(name) is None:
         raise FileFormatError(
-            f"{path}: reading {what} needs {root}, which is not installed: python -m pip install 'hdrive-mbs[records]' (or {root} alone)."
-        ) from None
+            f"{path}: reading {what} needs {name}, which is not installed: python -m pip install 'hdrive-mbs[records]' (or {name} alone)."
+        )
 
 
 def broken(path: os.PathLike[str], what: str, error: Exception) -> FileFormatError:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from hdrive_mbs.records.formats.file_format import Column, Contents, Format, Wanted, broken, check_width, named_unit, package, real_numbers
+from hdrive_mbs.records.formats.file_format import Column, Contents, Format, Wanted, broken, check_width, named_unit, real_numbers
 from hdrive_mbs.records.si_units import is_unit
 
 DEEPEST = 12
@@ -25,7 +25,8 @@ SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 def read(path: Path, wanted: Wanted) -> Contents:
     """All datasets of real numbers, named by their path without the leading slash."""
-    h5py = package("h5py", "HDF5 files", path)
+    import h5py
+
     skipped: dict[str, str] = {}
     columns: list[Column] = []
     try:
@@ -55,10 +56,10 @@ def datasets(group: Any, skipped: dict[str, str], parts: tuple[str, ...] = ()) -
     """Path and dataset of all that lies in the file itself, each once."""
     import h5py
 
-    stack = [(parts, group)]
-    seen = {group.id.__hash__()}
-    while stack:
-        above, inside = stack.pop()
+    waiting = [(parts, group)]
+    seen = {hash(group.id)}
+    while waiting:
+        above, inside = waiting.pop(0)
         for key in inside:
             path = (*above, str(key))
             name = "/".join(path)
@@ -78,7 +79,7 @@ def datasets(group: Any, skipped: dict[str, str], parts: tuple[str, ...] = ()) -
                     skipped[name] = "a group inside itself" if hash(item.id) in seen else f"groups more than {DEEPEST} deep"
                 else:
                     seen.add(hash(item.id))
-                    stack.append((path, item))
+                    waiting.append((path, item))
 
 
 def attribute_text(item: Any, name: str) -> str | None:
@@ -92,4 +93,6 @@ def attribute_text(item: Any, name: str) -> str | None:
     return value if isinstance(value, str) else None
 
 
-FORMAT = Format(name="HDF5", suffixes=(".h5", ".hdf5", ".hdf"), recognises=lambda head: head.startswith(SIGNATURE), read=read)
+FORMAT = Format(
+    name="HDF5", suffixes=(".h5", ".hdf5", ".hdf"), recognises=lambda head: head.startswith(SIGNATURE), read=read, needs=("h5py",)
+)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from hdrive_mbs.records.formats.file_format import Column, Contents, Format, Wanted, broken, check_width, package, real_numbers
+from hdrive_mbs.records.formats.file_format import Column, Contents, Format, Wanted, broken, check_width, real_numbers
 
 PLAIN_CONVERSIONS = {0, 1, 2, 4, 5, 6}
 """Identity, linear, rational and the three tables of numbers (ASAM MDF 4, block CC); 3 is a formula, from 7 on text."""
@@ -19,7 +19,8 @@ PLAIN_CONVERSIONS = {0, 1, 2, 4, 5, 6}
 
 def read(path: Path, wanted: Wanted) -> Contents:
     """All numeric channels.  A sample that its recorder marked as invalid becomes NaN."""
-    asammdf = package("asammdf", "MDF files", path)
+    import asammdf
+
     skipped: dict[str, str] = {}
     columns: list[Column] = []
     notes: list[str] = []
@@ -67,4 +68,11 @@ def _numbers(signal: Any) -> tuple[np.ndarray, int]:
     return values, int(marked.sum())
 
 
-FORMAT = Format(name="MDF 4", suffixes=(".mf4", ".mdf"), recognises=lambda head: head.startswith(b"MDF     "), read=read)
+FORMAT = Format(
+    name="MDF 4",
+    suffixes=(".mf4", ".mdf"),
+    recognises=lambda head: head.startswith(b"MDF     "),
+    read=read,
+    needs=("asammdf",),
+    apart=True,
+)

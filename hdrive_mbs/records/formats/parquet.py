@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hdrive_mbs.records.formats.file_format import Column, Contents, Format, Wanted, broken, check_width, named_unit, package
+from hdrive_mbs.records.formats.file_format import Column, Contents, Format, Wanted, broken, check_width, named_unit
 from hdrive_mbs.records.si_units import is_unit
 
 _STEPS = {"s": "s", "ms": "ms", "us": "us", "ns": "ns"}
@@ -15,8 +15,8 @@ _STEPS = {"s": "s", "ms": "ms", "us": "us", "ns": "ns"}
 
 def read(path: Path, wanted: Wanted) -> Contents:
     """Columns of numbers, times and durations; others are told of."""
-    parquet = package("pyarrow.parquet", "Parquet files", path)
-    types = package("pyarrow.types", "Parquet files", path)
+    from pyarrow import parquet, types
+
     columns: list[Column] = []
     skipped: dict[str, str] = {}
     try:
@@ -60,4 +60,4 @@ def _numbers(table: Any, types: Any) -> np.ndarray:
     return np.asarray(column.cast("float64").to_numpy(), dtype=float)
 
 
-FORMAT = Format(name="Parquet", suffixes=(".parquet", ".pq"), recognises=lambda head: head[:4] == b"PAR1", read=read)
+FORMAT = Format(name="Parquet", suffixes=(".parquet", ".pq"), recognises=lambda head: head[:4] == b"PAR1", read=read, needs=("pyarrow",))
