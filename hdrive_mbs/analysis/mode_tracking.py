@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from hdrive_mbs.analysis.roots import Roots
+from hdrive_mbs.analysis.roots import FloatArray, Roots
 
 IntArray = npt.NDArray[np.intp]
 
@@ -18,6 +18,9 @@ ALIKE = 0.7
 
 RELATED = 0.3
 """Likeness below which two roots are not the same, however small the step."""
+
+UNRELATED = 1e-12
+"""Likeness up to which two different roots have nothing to do with each other (forward and backward circles): rounding."""
 
 HALVINGS = 10
 
@@ -31,8 +34,8 @@ def follow(tracker: ModeTracker, speeds: Sequence[float]) -> IntArray:
     """Which root is which branch: (speeds, branches), -1 where a branch does not exist.
 
     Branches are compared by their right and left shapes (``Roots.likeness``) across a step, which is halved up to ten
-    times while a pair is in doubt: two roots that come close and turn away exchange their shapes over a small range of
-    speeds, and so keep their own frequencies; two that cross keep their shapes.
+    times while a pair is in doubt or coupled roots seem to cross: two roots that come close and turn away exchange their
+    shapes over a small range of speeds, and so keep their order; two that have nothing to do with each other cross.
     """
     here = tracker.roots(speeds[0])
     branch = np.arange(len(here.values))
@@ -93,7 +96,23 @@ def matched(a: Roots, b: Roots, certain: int) -> tuple[IntArray, bool]:
     related = likeness[rows, columns] > RELATED
     pairs[rows[related]] = columns[related]
     alike = (likeness > ALIKE) & (likeness < 1.0 / ALIKE)
-    return pairs, not (alike[:certain].any(axis=1).all() and alike[:, :certain].any(axis=0).all())
+    sure = alike[:certain].any(axis=1).all() and alike[:, :certain].any(axis=0).all()
+    return pairs, not sure or _exchange(a, b, pairs, likeness, certain)
+
+
+def _exchange(a: Roots, b: Roots, pairs: IntArray, likeness: FloatArray, certain: int) -> bool:
+    """Whether two of the lowest roots that have anything to do with each other change places in frequency.
+
+    Roots without any coupling cross; coupled ones come close, exchange their shapes over a range that may be much
+    smaller than the step, and turn away.
+    """
+    here = np.flatnonzero(pairs[:certain] != NONE)
+    there = pairs[here]
+    before = np.sign(np.subtract.outer(a.values[here].imag, a.values[here].imag))
+    after = np.sign(np.subtract.outer(b.values[there].imag, b.values[there].imag))
+    between = likeness[np.ix_(here, there)]
+    coupled = (between > UNRELATED) | (between.T > UNRELATED)
+    return bool(np.any((before * after < 0.0) & coupled))
 
 
 def _with_nearest(pairs: IntArray, a: Roots, b: Roots) -> IntArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
+_Vector = Callable[[FloatArray], FloatArray]
 
 TOLERANCE = 1e-10
 """Unbalanced force over the largest force involved at which the deflection counts as found."""
@@ -54,15 +55,32 @@ def rotor_point(scene: Scene, speed: float, *, lines: LineMatrices | None = None
     def unbalanced(q: FloatArray) -> FloatArray:
         return lines.forces(*state(q), twist.states)[lateral]
 
+    def slope(q: FloatArray) -> FloatArray:
+        return lines.at(*state(q), twist.states).stiffness[np.ix_(lateral, lateral)]
+
     q = np.array([start.angles[name] if start is not None else 0.0 for name in names])
+    scale = max(1.0, float(np.max(np.abs(unbalanced(q)), initial=0.0)))
+    q, force = _balanced(q, unbalanced, slope, TOLERANCE * scale)
+    if float(np.linalg.norm(force)) > 1e-6 * scale:
+        q, force = _held_then_released(np.zeros(len(names)), unbalanced, slope, scale)
+    if float(np.linalg.norm(force)) > 1e-6 * scale:
+        worst = names[int(np.argmax(np.abs(force)))]
+        raise AnalysisError(
+            f"No static deflection of {scene.name!r} at {speed:g} rad/s: {float(np.max(np.abs(force))):.3g} N or N m stay unbalanced at {worst!r}. "
+            "Something has to hold every place laterally there; give weight (a Gravity part) to bearings that need a load."
+        )
+    found, turning_speeds = state(q)
+    return RotorPoint(speed, found, turning_speeds, twist.states)
+
+
+def _balanced(q: FloatArray, unbalanced: _Vector, slope: _Vector, enough: float) -> tuple[FloatArray, FloatArray]:
+    """Newton's method with halved steps; returns the last displacements and the force left over."""
     force = unbalanced(q)
-    scale = max(1.0, float(np.max(np.abs(force), initial=0.0)))
     for _ in range(100):
         size = float(np.linalg.norm(force))
-        if size <= TOLERANCE * scale:
+        if size <= enough:
             break
-        stiffness = lines.at(*state(q), twist.states).stiffness[np.ix_(lateral, lateral)]
-        step = np.linalg.lstsq(stiffness, force, rcond=1e-13)[0]
+        step = np.linalg.lstsq(slope(q), force, rcond=1e-13)[0]
         for _halving in range(40):
             trial = q + step
             new = unbalanced(trial)
@@ -72,11 +90,12 @@ def rotor_point(scene: Scene, speed: float, *, lines: LineMatrices | None = None
         else:
             break
         q, force = trial, new
-    if float(np.linalg.norm(force)) > 1e-6 * scale:
-        worst = names[int(np.argmax(np.abs(force)))]
-        raise AnalysisError(
-            f"No static deflection of {scene.name!r} at {speed:g} rad/s: {float(np.max(np.abs(force))):.3g} N or N m stay unbalanced at {worst!r}. "
-            "Something has to hold every place laterally there; give weight (a Gravity part) to bearings that need a load."
-        )
-    found, turning_speeds = state(q)
-    return RotorPoint(speed, found, turning_speeds, twist.states)
+    return q, force
+
+
+def _held_then_released(q: FloatArray, unbalanced: _Vector, slope: _Vector, scale: float) -> tuple[FloatArray, FloatArray]:
+    """Equilibrium of a line that lies in its clearances: springs to the ground at every coordinate, then softer and softer ones."""
+    for soft in scale / 1e-5 * 10.0 ** -np.arange(0.0, 14.0):
+        held = soft * np.eye(len(q))
+        q, force = _balanced(q, lambda at: unbalanced(at) - held @ at, lambda at: slope(at) + held, TOLERANCE * scale)  # noqa: B023
+    return _balanced(q, unbalanced, slope, TOLERANCE * scale)

@@ -179,6 +179,8 @@ def initial_values(network: Network, speed: float, given: Mapping[str, float]) -
     states = {state.name: state.initial for state in network.states}
     bodies = {body.name: body for body in network.bodies}
     units = {"angle": "rad", "speed": "rad/s"} | {state.name: state.unit for state in network.states}
+    shown: dict[str, float] = {}
+    hidden = {body.shown_as + ending: body for body in network.bodies if body.shown_as for ending in ("", "_rate")}
     for name, given_value in given.items():
         value = _number(f"initial value of {name}", given_value, units.get(name.rpartition(".")[2], units.get(name, "SI units")))
         place, _, quantity = name.rpartition(".")
@@ -193,10 +195,24 @@ def initial_values(network: Network, speed: float, given: Mapping[str, float]) -
             angles[name] = value
         elif name.removesuffix("_rate") in bodies and bodies[name.removesuffix("_rate")].lateral:
             speeds[name.removesuffix("_rate")] = value
+        elif name in hidden:
+            shown[name] = value
         else:
-            known = [body.name if body.lateral else f"{body.name}.angle/.speed" for body in network.bodies] + list(states)
+            known = [body.shown_as or body.name if body.lateral else f"{body.name}.angle/.speed" for body in network.bodies] + list(states)
             raise unknown_place("initial value", name, known)
+    for body in network.bodies:
+        for ending, values in (("", angles), ("_rate", speeds)):
+            if body.shown_as and f"{body.name}{ending}" not in given:
+                values[body.name] = _hidden_value(network, body, values, shown.get(f"{body.shown_as}{ending}", 0.0))
     return {"angles": angles, "speeds": speeds, "states": states}
+
+
+def _hidden_value(network: Network, body: Body, values: Mapping[str, float], wanted: float) -> float:
+    """Value of a coordinate at which the displacement that stands for it is the wanted one."""
+    channel = next(channel for channel in network.channels if channel.name == body.shown_as)
+    assert channel.factors is not None
+    rest = sum(factor * values[name] for name, factor in channel.factors.items() if name != body.name)
+    return (wanted - rest) / channel.factors[body.name]
 
 
 def _thinned(raw: RawRun, sample_step: float) -> RawRun:

@@ -99,7 +99,10 @@ def add_housing_across(name: str, draft: Draft, station: Station, housing: Housi
         ("x", housing.stiffness_x, housing.damping_x, housing.power_stiffness_x),
         ("y", housing.stiffness_y, housing.damping_y, housing.power_stiffness_y),
     ):
-        across = draft.add_coordinate(f"{name}.across_{key}", inertia=0.0, unit="m", doc=f"displacement across {name} in {key}")
+        housed = f"{name}.housing.{key}"
+        across = draft.add_coordinate(
+            f"{name}.across_{key}", inertia=0.0, unit="m", doc=f"displacement across {name} in {key}", shown_as=housed
+        )
         row = np.zeros((1, 7))
         row[0, DIRECTIONS.index(key)], row[0, 6] = 1.0, -1.0
         square = row.T @ row
@@ -114,7 +117,7 @@ def add_housing_across(name: str, draft: Draft, station: Station, housing: Housi
         factors = {**stretches[key], across: -1.0}
         if power != 0.0:
             draft.add_relative_torque(f"{name}.foundation_{key}_power", factors, power_law(power, int(housing.power)))
-        draft.add_displacement(f"{name}.housing.{key}", factors, "m", f"housing of {name} in {key}")
+        draft.add_displacement(housed, factors, "m", f"housing of {name} in {key}")
         stretches[key] = {across: 1.0}
     return stretches
 

@@ -150,12 +150,12 @@ class Draft:
             node = self._nodes[station.node]
             self._nodes[station.node] = replace(node, mass=node.mass + mass.moved(station.offset))
 
-    def add_coordinate(self, name: str, *, inertia: float, unit: str, doc: str, group: str = "") -> str:
+    def add_coordinate(self, name: str, *, inertia: float, unit: str, doc: str, group: str = "", shown_as: str = "") -> str:
         """A lateral coordinate of a part's own (a housing, a mode): channels name, name_rate and name_acceleration.
 
-        group : see Body
+        group, shown_as : see Body
         """
-        self._bodies.append(Body(name, inertia, 1, 0.0, unit, lateral=True, group=group))
+        self._bodies.append(Body(name, inertia, 1, 0.0, unit, lateral=True, group=group, shown_as=shown_as))
         self.add_displacement(name, {name: 1.0}, unit, doc)
         return name
 

@@ -26,6 +26,7 @@ class Body:
     ratio : ideal speed of this body per speed of the driving motor, in true sense (0 for lateral motions)
     unit : unit of the coordinate, "rad" or "m"
     lateral : whether it is a lateral, axial or tilting motion and not the turning of a place
+    shown_as : displacement channel that users know in place of the coordinate, and for which initial values are given
     group : coordinates in a row with the same group are used together, so that the engine can keep them in one node
     """
 
@@ -36,6 +37,7 @@ class Body:
     unit: str = "rad"
     lateral: bool = False
     group: str = ""
+    shown_as: str = ""
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,7 @@ def plot_whirl_modes(result: WhirlModes, ax: Axes | None = None, *, mode: int = 
             return ax
         columns = 2 if count == 4 else min(count, 3)
         rows = -(-count // columns)
-        figure = new_figure(2.7 * columns + 0.5, 2.5 * rows + 0.9)
+        figure = new_figure(2.8 * columns + 0.5, 2.5 * rows + 0.9)
         axes = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
         for k in range(count):
             _shape(axes[k], result, k)
@@ -58,7 +58,7 @@ def plot_whirl_modes(result: WhirlModes, ax: Axes | None = None, *, mode: int = 
         more = f", {left} more not drawn" if left else ""
         figure.suptitle(f"{name}: damped modes at {number(result.speed)} rad/s{more}", x=0.01, ha="left")
         handles = {label: handle for one in axes[:count] for handle, label in zip(*one.get_legend_handles_labels(), strict=True)}
-        figure.legend(handles.values(), handles.keys(), loc="outside lower left", ncols=4)
+        figure.legend(handles.values(), handles.keys(), loc="outside lower left", ncols=6)
     first: Axes = axes[0]
     return first
 
@@ -67,8 +67,8 @@ def _title(result: WhirlModes, k: int) -> str:
     frequency = float(result.frequencies[k])
     hertz = number(frequency / (2.0 * np.pi))
     ratio = float(result.damping_ratios[k])
-    damping = f", damping ratio {ratio:.2g}" if abs(ratio) > 1e-9 else ", undamped"
-    return f"mode {k + 1}: {result.whirl[k]}\n{number(frequency)}\u2009rad/s, {hertz}\u2009Hz{damping}"
+    damping = f"damping ratio {ratio:.2g}" if abs(ratio) > 1e-9 else "undamped"
+    return f"mode {k + 1}: {result.whirl[k]}, {damping}\n{number(frequency)}\u2009rad/s, {hertz}\u2009Hz"
 
 
 def _shape(ax: Axes, result: WhirlModes, k: int) -> None:
