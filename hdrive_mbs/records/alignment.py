@@ -62,8 +62,9 @@ def clock_match(
     largest_offset : s; half the shorter record if not given
 
     Increments of both channels are cross-correlated for the offset to one sample, in eight stretches for
-    a first drift; then offset, drift, scale and bias that make ``other`` fit ``reference`` are found by
-    least squares (Gauss-Newton on a cubic spline), which resolves a fraction of a sample.
+    a first drift; then offset, drift, scale and bias that make ``reference`` fit ``other`` are found by
+    least squares (Gauss-Newton on a smoothing cubic), which resolves a fraction of a sample.  The clocks
+    are taken to run evenly: jumps or a changing drift are not followed, and show in the correlation.
     Raises AnalysisError when the two are not alike (correlation under 0.9) or do not move.
     """
     other_channel = other_channel or channel
@@ -174,35 +175,64 @@ def _first_guess(
     return middle, float(np.median([offset - drift * (centre - middle) for centre, offset in zip(centres, offsets, strict=True)])), drift
 
 
+def _smooth(times: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+    """Even times, values smoothed just enough that noise does not outweigh the slope of the signal, and that noise.
+
+    A cubic is fitted over as many samples as the signal needs to move by five times the noise (Savitzky and
+    Golay).  The standard deviation of white noise is that of the second differences over sqrt(6).
+    """
+    from scipy.signal import savgol_filter
+
+    step = float(np.median(np.diff(times)))
+    even = times[0] + step * np.arange(int((times[-1] - times[0]) / step) + 1)
+    samples = np.interp(even, times, values)
+    noise = float(np.std(np.diff(samples, 2))) / np.sqrt(6.0)
+    length = 1
+    while length < len(samples) // 10 and np.mean((samples[length:] - samples[:-length]) ** 2) < 52.0 * noise**2:
+        length *= 2
+    if length < 4:
+        return even, samples, 0.0
+    smoothed = np.asarray(savgol_filter(samples, 2 * length + 1, 3), float)
+    return even, smoothed, float(np.std(samples - smoothed))
+
+
 def _refined(
     x_times: FloatArray, x: FloatArray, y_times: FloatArray, y: FloatArray, middle: float, offset: float, drift: float, channel: str
 ) -> ClockMatch:
-    """Least squares in offset, drift, scale and bias: reference(t + offset + drift (t - middle)) = scale * other(t) + bias."""
+    """Least squares in offset, drift, scale and bias: other(t) = scale * reference(t + offset + drift (t - middle)) + bias."""
     from scipy.interpolate import CubicSpline
 
-    spline = CubicSpline(x_times, x)
+    even, smoothed, noise = _smooth(x_times, x)
+    spline = CubicSpline(even, smoothed)
     slope = spline.derivative()
     errors = (float("inf"), float("inf"))
-    correlation = 0.0
-    for _ in range(20):
+    correlation, scale = 0.0, 1.0
+    for _ in range(30):
         shifted = y_times + offset + drift * (y_times - middle)
-        inside = (shifted >= x_times[0]) & (shifted <= x_times[-1])
+        inside = (shifted >= even[0]) & (shifted <= even[-1])
         if inside.sum() < 16:
             break
-        t, fitted, rate = y_times[inside] - middle, spline(shifted[inside]), slope(shifted[inside])
-        design = np.column_stack((-rate, -rate * t, y[inside], np.ones(int(inside.sum()))))
-        scales = np.linalg.norm(design, axis=0)
-        if not np.all(scales > 0.0):
+        t, measured = y_times[inside] - middle, y[inside]
+        rate = scale * slope(shifted[inside])
+        design = np.column_stack((rate, rate * t, spline(shifted[inside]), np.ones(len(t))))
+        sizes = np.linalg.norm(design, axis=0)
+        if not np.all(sizes > 0.0):
             break
-        solution, *_ = np.linalg.lstsq(design / scales, fitted, rcond=1e-12)
-        rest = fitted - design @ (solution / scales)
-        covariance = np.linalg.pinv((design / scales).T @ (design / scales)) * float(rest @ rest) / max(len(rest) - 4, 1)
-        change = solution / scales
-        offset, drift = offset + float(change[0]), drift + float(change[1])
-        errors = (float(np.sqrt(covariance[0, 0])) / scales[0], float(np.sqrt(covariance[1, 1])) / scales[1])
-        total = fitted - fitted.mean()
+        solution = np.linalg.lstsq(design / sizes, measured, rcond=1e-12)[0] / sizes
+        rest = measured - design @ solution
+        power = float(rest @ rest) / max(len(rest) - 4, 1)
+        # noise of the reference acts like noise of the other, with the density of its samples
+        shared = (
+            1.0 + (solution[2] * noise) ** 2 * float(np.median(np.diff(x_times))) / (power * float(np.median(np.diff(y_times))))
+            if power
+            else 1.0
+        )
+        covariance = np.linalg.pinv((design / sizes).T @ (design / sizes)) * power * shared
+        offset, drift, scale = offset + float(solution[0]), drift + float(solution[1]), float(solution[2])
+        errors = (float(np.sqrt(covariance[0, 0])) / sizes[0], float(np.sqrt(covariance[1, 1])) / sizes[1])
+        total = measured - measured.mean()
         correlation = float(np.sqrt(max(0.0, 1.0 - float(rest @ rest) / float(total @ total)))) if np.any(total) else 0.0
-        if abs(change[0]) < 0.01 * errors[0] and abs(change[1]) < 0.01 * errors[1]:
+        if abs(solution[0]) < 0.01 * errors[0] and abs(solution[1]) < 0.01 * errors[1]:
             break
     return ClockMatch(
         channel=channel, offset=offset, drift=drift, offset_error=errors[0], drift_error=errors[1], middle=middle, correlation=correlation

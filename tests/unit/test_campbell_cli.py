@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import json
 import math
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -110,10 +111,9 @@ def test_set_reaches_the_scene(scene: str, tmp_path: Path) -> None:
 def test_modes_of_a_rotor_line_are_its_whirl_modes(scene: str, tmp_path: Path) -> None:
     printed = call("modes", scene, "--speed", "100", "--count", "3", "--out", str(tmp_path / "m"), "--json", str(tmp_path / "m.json"))
     written = json.loads((tmp_path / "m.json").read_text())
-    # closed form, see test_published_rotors
-    assert [mode["frequency"] for mode in written["modes"]] == pytest.approx([115.4136, 126.4118, 561.98], rel=0.6)
     assert [mode["whirl"] for mode in written["modes"]][:2] == ["backward", "forward"]
-    assert written["modes"][0]["frequency"] == pytest.approx(115.4136, abs=6e-5)
+    # closed form, see test_published_rotors
+    assert [mode["frequency"] for mode in written["modes"]][:2] == pytest.approx([115.4136, 126.4118], abs=6e-5)
     assert set(written["modes"][0]) == {"whirl", "frequency", "natural", "damping_ratio", "log_decrement"}
     assert "115.414" in printed
     for name in ("modes.png", "modes.svg", "modes.csv", "modes.npz"):
@@ -224,7 +224,7 @@ def test_titles_of_panels_do_not_run_into_each_other() -> None:
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     boxes = [one._left_title.get_window_extent(canvas.get_renderer()) for one in figure.axes]  # type: ignore[attr-defined]
-    for left, right in zip(boxes[:-1], boxes[1:], strict=True):
+    for left, right in pairwise(boxes):
         assert left.x1 < right.x0 or abs(left.y0 - right.y0) > 20.0
 
 

@@ -92,12 +92,12 @@ def test_capture_and_passage_converge_with_the_step(torque: float) -> None:
 
 def test_the_captured_disc_settles_where_whirl_takes_the_whole_torque() -> None:
     weak = run(WEAK)
-    # the steady balance c w |Z|^2 w = T w below the resonance, from the reference: 28.136 rad/s
+    # the steady balance c w |Z|^2 w = T w below the resonance, from the reference: 28.130 rad/s
     low, high = 27.0, DISC.largest_steady_torque()[0]
     for _ in range(60):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if DISC.steady_torque(middle) < WEAK else (low, middle)
-    # it nods with a period of 10 s; over the last four the mean is off by some share of a swing of 0.1 rad/s
+    # it nods with a period of 10 s; over four swings the mean is off by some share of a swing of 0.1 rad/s
     mean = float(np.mean(weak.values["disc.speed"][weak.times > 120.0]))
     assert mean == pytest.approx(low, abs=0.02)
     # the last tenth is 1.6 swings, in which the torque swings by some 0.1 x J x 2 pi/10 s = 0.035 N m: 10 % of that is left

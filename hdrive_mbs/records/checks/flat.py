@@ -1,8 +1,8 @@
 """Sensors that stand still: constant, stuck or saturated.
 
 Whether a flat stretch is a fault depends on what a channel is.  A command of straight pieces may rest
-at its extremes, and an encoder at rest shows one number; so "saturated" needs a signal that runs into
-the extreme at speed, and "stuck" one that either was noisy before or follows another channel that
+at its extremes, and an encoder at rest shows one number; so "saturated" needs a signal that would have
+gone on well beyond the extreme, and "stuck" one that either was noisy before or follows another channel that
 moves on.  A channel that is constant from end to end may be right and is only reported.
 """
 
@@ -35,8 +35,11 @@ SHOULD_MOVE = 0.05
 CLIPPED_SAMPLES, CLIPPED_SHARE = 5, 0.002
 """Least length of a flat top, and share of the record on flat tops."""
 
-AT_SPEED = 0.25
-"""Slope just before a flat top, in rms slopes, from which the signal was cut off."""
+LONGER = 3.0
+"""A flat top is that many times longer than 95 % of the stretches of one value below it."""
+
+CUT_SHARE, CUT_STEPS = 0.01, 5.0
+"""Least height that a flat top cuts off: share of the range, and steps of rounding."""
 
 
 def flat_channels(record: Record) -> Iterator[Finding]:
@@ -72,6 +75,8 @@ def _stuck(record: Record, channel: Measurement, starts: np.ndarray, lengths: np
     if length < max(STUCK_SAMPLES, STUCK_SHARE * len(record)) or not len(others) or length < LONGEST_USUAL * np.percentile(others, 99):
         return
     begin = int(starts[longest])
+    if _straight(np.concatenate((channel.values[:begin], channel.values[begin + length :]))):
+        return
     inside = slice(begin, begin + length)
     outside = np.ones(len(record), dtype=bool)
     outside[inside] = False
@@ -132,16 +137,27 @@ def _should_move(values: FloatArray, other: FloatArray, inside: slice, outside: 
     return bool(abs(slope) * np.ptp(other[inside]) > SHOULD_MOVE * np.ptp(values))
 
 
+def _straight(values: FloatArray) -> bool:
+    """Whether most of what moves lies on straight lines of ten samples and more: a command, not a sensor."""
+    steps = np.diff(values)
+    starts, lengths = _runs(np.round(steps / max(float(np.ptp(values)), 1e-300), 12))
+    moving = steps[starts] != 0.0
+    total = int(lengths[moving].sum())
+    return bool(total and lengths[moving & (lengths >= 10)].sum() > 0.5 * total)
+
+
 def _saturated(record: Record, channel: Measurement, starts: np.ndarray, lengths: np.ndarray) -> Iterator[Finding]:
     values = channel.values
-    slopes = np.diff(values)
-    usual = float(np.sqrt(np.mean(slopes**2)))
-    straight = np.mean(np.abs(np.diff(slopes)) <= 1e-9 * np.ptp(values)) > 0.5
-    if straight:  # a command of straight pieces, or an encoder that hardly moves
+    if _straight(values):
         return
+    steps = np.abs(np.diff(values))
+    rounding = float(steps[steps > 0.0].min())
+    least = max(CUT_SHARE * float(np.ptp(values)), CUT_STEPS * rounding)
     for extreme, word in ((values.max(), "largest"), (values.min(), "smallest")):
-        flat = np.flatnonzero((values[starts] == extreme) & (lengths >= CLIPPED_SAMPLES))
-        cut = [int(run) for run in flat if _cut_off(values, int(starts[run]), int(lengths[run]), usual)]
+        top = values[starts] == extreme
+        usual = float(np.percentile(lengths[~top], 95)) if np.any(~top) else 0.0
+        flat = np.flatnonzero(top & (lengths >= max(CLIPPED_SAMPLES, LONGER * usual)))
+        cut = [int(run) for run in flat if _cut_height(values, int(starts[run]), int(lengths[run])) > least]
         count = int(lengths[cut].sum()) if cut else 0
         if count >= max(CLIPPED_SAMPLES, CLIPPED_SHARE * len(values)):
             begin = int(starts[cut[0]])
@@ -158,9 +174,13 @@ def _saturated(record: Record, channel: Measurement, starts: np.ndarray, lengths
             )
 
 
-def _cut_off(values: FloatArray, begin: int, length: int, usual: float) -> bool:
-    """The signal ran into the flat stretch, or out of it, at speed."""
-    before = values[max(0, begin - 3) : begin + 1]
-    after = values[begin + length - 1 : begin + length + 3]
-    speeds = [abs(float(part[-1] - part[0])) / (len(part) - 1) for part in (before, after) if len(part) > 1]
-    return bool(speeds) and max(speeds) > AT_SPEED * usual
+def _cut_height(values: FloatArray, begin: int, length: int) -> float:
+    """How far the signal would have gone on beyond a flat stretch: the height of a parabola with the slopes at its edges.
+
+    A parabola of length L with slope s at its edges is s L / 4 high.  The slopes are means over a quarter of the
+    stretch; the flat top of a rounded maximum is then 1.25 steps of rounding high, that of a cut one far more.
+    """
+    reach = max(3, length // 4)
+    before, after = values[max(0, begin - reach) : begin + 1], values[begin + length - 1 : begin + length + reach]
+    slopes = [abs(float(part[-1] - part[0])) / (len(part) - 1) for part in (before, after) if len(part) > 1]
+    return max(slopes, default=0.0) * length / 4.0
