@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from hdrive_mbs.analysis.rotor_places import spin_ratios
 from hdrive_mbs.analysis.run_up import RunUp
 from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.plots.dispatch import plot
@@ -117,13 +118,20 @@ def _rotor(ax: Axes, result: RunUp, name: str, about: str, logarithmic: bool) ->
 
 def _criticals(ax: Axes, result: RunUp, name: str, top: float) -> None:
     """Critical speeds of the reference shaft, on the scale of this rotor's speed."""
-    reference = float(np.max(np.abs(result.values[f"{result.reference}.speed"])))
-    ratio = top / reference if reference > 0.0 else 1.0
+    ratio = _ratio(result, name)
     label: str | None = "undamped critical speed"
     for critical in result.critical_speeds:
         if critical * ratio <= 1.02 * top:
             ax.axvline(critical * ratio, color=GREY, linestyle="--", linewidth=0.9, label=label)
             label = None
+
+
+def _ratio(result: RunUp, name: str) -> float:
+    """Speed of the rotor over that of the reference shaft."""
+    if result.scene is not None:
+        return abs(spin_ratios(result.scene)[result.scene.network().places[name]])
+    turned = [np.abs(result.values[f"{place}.angle"][-1]) for place in (name, result.reference)]
+    return float(turned[0] / turned[1]) if turned[1] else 1.0
 
 
 def _peaks(ax: Axes, result: RunUp, name: str, top: float, factor: float, unit: str) -> None:

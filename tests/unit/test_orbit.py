@@ -10,8 +10,9 @@ import pytest
 from matplotlib.figure import Figure
 
 import hdrive_mbs as hm
+from tests.unit.picture_checks import assert_nothing_is_cut_off
 from tests.unit.rotor_scenes import CRITICAL, ECCENTRICITY, MASS, STIFFNESS, constant, jeffcott, made, steady, support
-from tests.unit.test_plots import drawn, figure_of, ticks_outside
+from tests.unit.test_plots import figure_of
 
 SPEED = 100.0
 
@@ -163,22 +164,13 @@ def test_bad_questions_are_refused_with_the_way_out() -> None:
 def test_the_picture_has_equal_scales_units_and_amplitudes_that_say_0_peak(changing: bool) -> None:
     result = hm.orbit(run_up(), "disc") if changing else hm.orbit(whirl(3e-4, 1e-4), "disc")
     ax = hm.plot(result)
-    renderer = drawn(ax)
     assert ax.get_aspect() == 1.0
     assert ax.get_xlabel().endswith("[mm]" if changing else "[µm]")
     figure = figure_of(ax)
     title = figure._suptitle.get_text()  # type: ignore[attr-defined]
     assert "0-peak" in title
     assert "forward precession" in title
-    hidden = ticks_outside(figure)
-    width, height = figure.canvas.get_width_height()
-    for text in figure.findobj(lambda item: hasattr(item, "get_text") and hasattr(item, "get_window_extent")):
-        if text.get_visible() and text.get_text().strip() and text not in hidden:
-            box = text.get_window_extent(renderer)
-            assert box.x0 > -2.0, text.get_text()
-            assert box.x1 < width + 2.0, text.get_text()
-            assert box.y0 > -2.0, text.get_text()
-            assert box.y1 < height + 2.0, text.get_text()
+    assert_nothing_is_cut_off(ax)
     own = Figure().add_subplot()
     assert hm.plot(result, ax=own) is own
 

@@ -10,8 +10,9 @@ import pytest
 from matplotlib.figure import Figure
 
 import hdrive_mbs as hm
-from tests.unit.rotor_scenes import CRITICAL, constant, jeffcott, made, steady
-from tests.unit.test_plots import drawn, figure_of
+from tests.unit.picture_checks import assert_nothing_is_cut_off
+from tests.unit.rotor_scenes import CRITICAL, DAMPING, ECCENTRICITY, MASS, STIFFNESS, constant, jeffcott, made, steady
+from tests.unit.test_plots import figure_of
 
 ACCELERATION = 40.0
 
@@ -83,19 +84,32 @@ def slow() -> hm.RunUp:
     return hm.run_up(jeffcott(constant(0.3)), 9.0, initial_speed=180.0)
 
 
+def slowly_rising(speed: float, rise: float) -> complex:
+    """A of x + i y = A exp(i phi), to first order in a = phi'':  D A0 = m e w^2,  D A1 = -i m e a - (2 i m w + c) A0' - i m a A0.
+
+    From m (A'' + 2 i w A' + i a A - w^2 A) + c (A' + i w A) + k A = m e (w^2 - i a), with D = k - m w^2 + i c w and A0' = a dA0/dw.
+    """
+    first, step = steady(speed), 1e-3
+    change = rise * (steady(speed + step) - steady(speed - step)) / (2.0 * step)
+    stiffness = complex(STIFFNESS - MASS * speed**2, DAMPING * speed)
+    right = -1j * MASS * ECCENTRICITY * rise - (2j * MASS * speed + DAMPING) * change - 1j * MASS * rise * first
+    return first + right / stiffness
+
+
 def test_a_slow_run_up_gives_the_bode_plot_of_the_closed_form() -> None:
     result = hm.order_tracking(slow(), "disc", revolutions=4.0)
     assert result.tracks[0] == "1 forward"
     expected = np.array([steady(float(w)) for w in result.speeds])
-    # to a chirp exp(i a t^2/2) a pole p answers  f/(i w - p) (1 + i a/(i w - p)^2 + ...): relative a/(w0 - w)^2 below the resonance
+    # far below the resonance the rest is of the order (a/(w0 - w)^2)^2; the run itself is good to 1e-3
     before = (result.speeds > 190.0) & (result.speeds < 300.0)
     w = result.speeds[before]
-    allowed = 1.1 * 30.0 / (CRITICAL - w) ** 2 + 1e-3
-    assert np.all(np.abs(result.track()[before] / expected[before] - 1.0) < allowed)
-    assert allowed[w < 250.0].max() < 0.01
-    # phase -90 degrees near the critical speed, then towards -180
+    drifting = np.array([slowly_rising(float(value), 30.0) for value in w])
+    allowed = 5.0 * (30.0 / (CRITICAL - w) ** 2) ** 2 + 1e-3
+    assert np.all(np.abs(result.track()[before] / drifting - 1.0) < allowed)
+    assert allowed[w < 270.0].max() < 3e-3
+    # phase -90 degrees just after the critical speed, as the whirl lags by its time constant: a 2 m/c = 4.8 rad/s
     crossing = result.speeds[int(np.argmax(np.angle(result.track()) < -np.pi / 2.0))]
-    assert crossing == pytest.approx(316.2, abs=3.0)
+    assert CRITICAL < crossing < CRITICAL + 4.8
     late = result.speeds > 420.0
     np.testing.assert_allclose(np.abs(result.track())[late], np.abs(expected)[late], rtol=0.05)
 
@@ -115,7 +129,7 @@ def test_tracks_are_saved_and_written_as_a_table(tmp_path: Path) -> None:
 
 def test_the_picture_shows_amplitude_0_peak_and_phase_over_speed(tmp_path: Path) -> None:
     upper = hm.plot(hm.order_tracking(slow(), "disc"))
-    drawn(upper)
+    assert_nothing_is_cut_off(upper)
     lower = figure_of(upper).axes[1]
     assert upper.get_ylabel() == "amplitude, 0-peak [mm]"
     assert lower.get_ylabel() == "phase against the spin [deg]"

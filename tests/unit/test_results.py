@@ -215,7 +215,7 @@ def test_numbers_that_were_edited_do_not_fit_their_checksum(tmp_path: Path) -> N
     [
         (lambda d: d.update(format="hdrive-mbs result 2"), r"found 'hdrive-mbs result 2'\)\. A newer version of hdrive_mbs wrote it"),
         (lambda d: d.update(format="somebody's result"), rf"is not in the format '{FORMAT}' \(found \"somebody's result\"\)\.$"),
-        (lambda d: d.update(result="Waterfall"), r"holds a 'Waterfall', which this version does not know"),
+        (lambda d: d.update(result="Hologram"), r"holds a 'Hologram', which this version does not know"),
         (lambda d: d["fields"].pop("undamped"), r"the fields of a Modes have changed with the version \(undamped\)"),
         (lambda d: d["fields"].update(colour="red"), r"the fields of a Modes have changed with the version \(colour\)"),
     ],

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import hdrive_mbs as hm
 from hdrive_mbs.analysis.line_matrices import LineMatrices
@@ -18,7 +19,9 @@ from hdrive_mbs.analysis.run_up_step import choose_step, fastest_speeds
 from hdrive_mbs.analysis.speed_peaks import Whirl, speed_peaks
 from hdrive_mbs.analysis.synchronous_whirl import CriticalSpeed, critical_speeds
 from models.two_rotor_line import build
+from tests.unit.picture_checks import assert_nothing_is_cut_off
 from tests.unit.rotor_scenes import CRITICAL, DAMPING, ECCENTRICITY, MASS, POLAR, STIFFNESS, constant, holding, jeffcott, steady, support
+from tests.unit.test_plots import figure_of
 from tests.verification.reference_sommerfeld import SpinUp, UnbalancedDisc, spin_up
 
 ACCURACY = 1e-3
@@ -341,6 +344,45 @@ def test_fewer_samples_keep_the_peak_by_interpolation() -> None:
     # w h = 0.36 between samples: cubic Hermite (w h)^4/384 = 4e-5
     assert len(run.times) < 1300
     assert run.peak_amplitude["disc"] == pytest.approx(jeffcott_run().peak_amplitude["disc"], rel=1e-4)
+
+
+# -- the picture ------------------------------------------------------------------------------------
+
+
+def test_the_picture_shows_both_centres_over_speed_with_peaks_and_critical_speeds(tmp_path: Path) -> None:
+    run = reference_line()
+    first = hm.plot(run)
+    assert_nothing_is_cut_off(first)
+    axes = figure_of(first).axes
+    assert [ax.get_title(loc="left") for ax in axes] == ["", "drive disc", "rotor 1", "rotor 2"]
+    assert first.get_xlabel() == "time [s]"
+    assert axes[-1].get_xlabel() == "speed of the rotor [rad/s]"
+    assert all("0-peak [µm]" in ax.get_ylabel() for ax in axes[1:])
+    # rotor 1 alone is unbalanced: a line for C and one for P; 428.5 um at 411.5 rad/s is written beside its peak
+    curves = [line for line in axes[2].get_lines() if len(line.get_xdata()) > 100]
+    assert len(curves) == 2
+    assert float(np.max(curves[0].get_ydata())) == pytest.approx(1e6 * run.peak_amplitude["rotor_1"], rel=1e-3)
+    assert any("428.5" in text.get_text() and "411.5" in text.get_text() for text in axes[2].texts)
+    upright = [line.get_xdata()[0] for line in axes[2].get_lines() if len(line.get_xdata()) == 2]
+    assert sorted(map(float, upright)) == pytest.approx(run.critical_speeds.tolist(), rel=1e-9)
+    png, svg = hm.save_figure(first, tmp_path / "run")
+    assert png.stat().st_size > 10_000
+    assert svg.stat().st_size < 1_000_000
+
+
+def test_the_picture_of_one_rotor_goes_on_axes_of_the_caller() -> None:
+    own = Figure().add_subplot()
+    assert hm.plot(jeffcott_run(), ax=own, about="axis", logarithmic=True) is own
+    assert own.get_ylabel() == "distance from axis,\n0-peak [mm]"
+    assert own.get_yscale() == "log"
+    assert len(figure_of(own).axes) == 1
+    with pytest.raises(hm.ParameterError, match="about = 'zero': must be one of static, axis"):
+        hm.plot(jeffcott_run(), about="zero")
+    with pytest.raises(hm.PlaceError, match="No rotor 'rotor'"):
+        hm.plot(jeffcott_run(), rotors=["rotor"])
+
+
+# -- bad input --------------------------------------------------------------------------------------
 
 
 def test_bad_questions_are_refused_with_the_way_out() -> None:

@@ -10,8 +10,9 @@ import pytest
 from matplotlib.figure import Figure
 
 import hdrive_mbs as hm
+from tests.unit.picture_checks import assert_nothing_is_cut_off, written
 from tests.unit.rotor_scenes import CRITICAL, constant, jeffcott, made
-from tests.unit.test_plots import drawn, figure_of, ticks_outside
+from tests.unit.test_plots import figure_of
 
 TURN = 2.0 * np.pi
 ACCELERATION = 50.0
@@ -174,20 +175,10 @@ PICTURES = {
 @pytest.mark.parametrize("name", PICTURES)
 def test_the_picture_names_quantities_units_and_0_peak_and_cuts_nothing_off(name: str, tmp_path: Path) -> None:
     ax = PICTURES[name]()
-    renderer = drawn(ax)
-    figure = figure_of(ax)
     for label in (ax.get_xlabel(), ax.get_ylabel()):
         assert label.endswith("]"), label
-    assert any("0-peak" in text.get_text() for text in figure.findobj(lambda item: hasattr(item, "get_text")))
-    hidden = ticks_outside(figure)
-    width, height = figure.canvas.get_width_height()
-    for text in figure.findobj(lambda item: hasattr(item, "get_text") and hasattr(item, "get_window_extent")):
-        if text.get_visible() and text.get_text().strip() and text not in hidden:
-            box = text.get_window_extent(renderer)
-            assert box.x0 > -2.0, text.get_text()
-            assert box.x1 < width + 2.0, text.get_text()
-            assert box.y0 > -2.0, text.get_text()
-            assert box.y1 < height + 2.0, text.get_text()
+    assert any("0-peak" in text for text in written(ax))
+    assert_nothing_is_cut_off(ax)
     png, svg = hm.save_figure(ax, tmp_path / "picture")
     assert png.stat().st_size > 5000
     assert svg.stat().st_size < 1_500_000

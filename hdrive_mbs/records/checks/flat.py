@@ -38,8 +38,15 @@ CLIPPED_SAMPLES, CLIPPED_SHARE = 5, 0.002
 LONGER = 3.0
 """A flat top is that many times longer than 95 % of the stretches of one value below it."""
 
-CUT_SHARE, CUT_STEPS = 0.01, 5.0
+CUT_SHARE, CUT_STEPS = 0.01, 6.0
 """Least height that a flat top cuts off: share of the range, and steps of rounding."""
+
+
+CLEAR_MOVE = 40.0
+"""Multiple of the noise by which a signal must move before a flat top for its slope there to be known to 20 %."""
+
+AT_SPEED = 0.6
+"""Slope at the edge of a flat top, as a share of that of the chord, from which the signal was cut off."""
 
 
 def flat_channels(record: Record) -> Iterator[Finding]:
@@ -138,12 +145,24 @@ def _should_move(values: FloatArray, other: FloatArray, inside: slice, outside: 
 
 
 def _straight(values: FloatArray) -> bool:
-    """Whether most of what moves lies on straight lines of ten samples and more: a command, not a sensor."""
-    steps = np.diff(values)
-    starts, lengths = _runs(np.round(steps / max(float(np.ptp(values)), 1e-300), 12))
-    moving = steps[starts] != 0.0
-    total = int(lengths[moving].sum())
-    return bool(total and lengths[moving & (lengths >= 10)].sum() > 0.5 * total)
+    """Whether most of what moves lies on straight lines: a command, not a sensor.
+
+    Steps over ten samples that stay alike, to two steps of rounding, over thirty samples and more are a straight
+    line; those of a curve drift away however slowly it bends.
+    """
+    single = np.abs(np.diff(values))
+    rounding = float(single[single > 0.0].min(initial=np.inf))
+    tolerance = max(2.0 * rounding, 1e-9 * float(np.ptp(values))) if np.isfinite(rounding) else 0.0
+    steps = np.diff(values[::10])
+    moving = np.abs(steps) > 4.0 * tolerance
+    alike = (np.abs(np.diff(steps)) <= tolerance) & moving[1:] & moving[:-1]
+    starts, lengths = _runs(alike.astype(float))
+    on_lines = 0
+    for start, length in zip(starts.tolist(), lengths.tolist(), strict=True):
+        line = steps[start : start + length + 1]
+        if alike[start] and length >= 2 and np.ptp(line) <= 2.0 * tolerance:
+            on_lines += length + 1
+    return bool(on_lines > 0.5 * np.sum(moving))
 
 
 def _saturated(record: Record, channel: Measurement, starts: np.ndarray, lengths: np.ndarray) -> Iterator[Finding]:
@@ -157,7 +176,8 @@ def _saturated(record: Record, channel: Measurement, starts: np.ndarray, lengths
         top = values[starts] == extreme
         usual = float(np.percentile(lengths[~top], 95)) if np.any(~top) else 0.0
         flat = np.flatnonzero(top & (lengths >= max(CLIPPED_SAMPLES, LONGER * usual)))
-        cut = [int(run) for run in flat if _cut_height(values, int(starts[run]), int(lengths[run])) > least]
+        heights = {int(run): _cut_heights(values, int(starts[run]), int(lengths[run])) for run in flat}
+        cut = [run for run, both in heights.items() if both.max() > least]
         count = int(lengths[cut].sum()) if cut else 0
         if count >= max(CLIPPED_SAMPLES, CLIPPED_SHARE * len(values)):
             begin = int(starts[cut[0]])
@@ -165,7 +185,7 @@ def _saturated(record: Record, channel: Measurement, starts: np.ndarray, lengths
                 kind="saturated",
                 channel=channel.name,
                 where=f"t = {record.times[begin]:.6g} s",
-                blocks=True,
+                blocks=sum(int(np.sum(heights[run] > 0.0)) for run in cut) > 1,  # one edge may be the start or end of a motion
                 text=(
                     f"cut off at its {word} value {extreme:.6g} {channel.unit} in {len(cut)} stretches, {count} samples, "
                     f"first at t = {record.times[begin]:.6g} s; "
@@ -174,13 +194,29 @@ def _saturated(record: Record, channel: Measurement, starts: np.ndarray, lengths
             )
 
 
-def _cut_height(values: FloatArray, begin: int, length: int) -> float:
-    """How far the signal would have gone on beyond a flat stretch: the height of a parabola with the slopes at its edges.
+def _cut_heights(values: FloatArray, begin: int, length: int) -> FloatArray:
+    """How far the signal would have gone on with the slope that it had at the edge of a flat stretch, at both edges.
 
-    A parabola of length L with slope s at its edges is s L / 4 high.  The slopes are means over a quarter of the
-    stretch; the flat top of a rounded maximum is then 1.25 steps of rounding high, that of a cut one far more.
+    Before (or after) the stretch a parabola is laid through three points: the edge, where the signal is CLEAR_MOVE
+    times its noise away from it, and half-way.  Of a signal that was cut off the slope at the edge is that of
+    the chord; of one that comes to rest there it is 0; of the rounded top of a maximum it is well below.
+    It goes on with that slope for a quarter of the stretch, as a parabola with both its edges does.
     """
-    reach = max(3, length // 4)
-    before, after = values[max(0, begin - reach) : begin + 1], values[begin + length - 1 : begin + length + reach]
-    slopes = [abs(float(part[-1] - part[0])) / (len(part) - 1) for part in (before, after) if len(part) > 1]
-    return max(slopes, default=0.0) * length / 4.0
+    heights = np.zeros(2)
+    longest = len(values) // 10
+    for edge, part in enumerate((values[max(0, begin - longest) : begin + 1], values[begin + length - 1 : begin + length + longest][::-1])):
+        if len(part) < 5:
+            continue
+        noise = float(np.std(np.diff(part[-STUCK_SAMPLES:], 2))) / np.sqrt(6.0)
+        away = np.abs(part[::-1] - part[-1])
+        far = np.flatnonzero(away[4:] > CLEAR_MOVE * noise)
+        if not len(far):
+            continue
+        reach = (int(far[0]) + 5) // 2 * 2
+        if reach >= len(part):
+            continue
+        moved, half = float(part[-1] - part[-1 - reach]), float(part[-1] - part[-1 - reach // 2])
+        slope = (4.0 * half - moved) / reach
+        if abs(slope) * reach > AT_SPEED * abs(moved) and slope * moved > 0.0:
+            heights[edge] = abs(slope) * min(length / 4.0, reach)
+    return heights
