@@ -52,6 +52,10 @@ class AnalysisError(HdriveError, RuntimeError):
     """An analysis has no defensible answer for this scene."""
 
 
+class DependencyError(HdriveError, ImportError):
+    """An optional package is missing; the text has the command that installs it."""
+
+
 def unknown_place(kind: str, name: str, known: Iterable[str], owner: str = "This scene") -> PlaceError:
     """A PlaceError of the form ``No place 'gaer'. This scene has: motor, gear.``"""
     listed = ", ".join(known) or "none"

@@ -15,7 +15,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, judge, and write the results; returns 0 when it ran, whatever the verdicts."""
     parser = argparse.ArgumentParser(description="Bearing models of Matyja 2015: accuracy, run time, validity, claims.")
     parser.add_argument("--quick", action="store_true", help="smoke test: one line, a short run-up, one repeat; most figures mean nothing")
-    parser.add_argument("--repeats", type=int, default=5, help="repeats of each run that takes less than 1.5 s (default 5)")
+    parser.add_argument("--repeats", type=int, default=5, help="repeats of each run that takes less than a second (default 5)")
     parser.add_argument("--out", type=Path, help="folder for the results; default: beside the command, none with --quick")
     options = parser.parse_args(arguments)
     if options.repeats < 1:

@@ -21,7 +21,7 @@ def report(found: Findings, numbers: Mapping[str, Any], claims: Sequence[Claim],
         "# The bearing models of Matyja 2015, compared",
         f"Line of models/two_rotor_line.py, torque-driven run-up of {found.duration:g} s. Amplitudes are distances of the geometric "
         f"centre from the axis, 0-peak. Deviations are from the full model, converged. CPU seconds of the integration alone, median "
-        f"of {numbers['repeats']} interleaved repeats in one process (runs longer than 1.5 s: once).",
+        f"of {numbers['repeats']} interleaved repeats in one process (runs longer than a second: once).",
         facts(numbers["machine"]),
         "## Claims of the paper",
         _verdicts(claims, "the paper"),
@@ -41,7 +41,7 @@ def report(found: Findings, numbers: Mapping[str, Any], claims: Sequence[Claim],
         "run_up as it comes, without a setting; CPU time of the whole call with all channels and peaks:",
         _defaults(found),
         "## All runs",
-        f"{IMPLICIT}: trapezoidal rule, setting: step; {FIXED}: classical Runge-Kutta, setting: step, from 0.9 and 0.45 of the longest "
+        f"{IMPLICIT}: trapezoidal rule, setting: step; {FIXED}: classical Runge-Kutta, setting: step, 0.9 (and 0.45) of the longest "
         f"stable one; {ADAPTIVE}: Dormand-Prince, setting: relative tolerance (counted against the largest coordinate, the spin angle). "
         "Error: of the peaks, the larger of both rotors, against the same model and against the full one, both converged.",
         *(f"### {case.name}: {case.what}\n\n{_runs(numbers['cases'][case.name]['models'])}" for case in found.runs),

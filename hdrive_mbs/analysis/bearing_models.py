@@ -73,7 +73,8 @@ def with_bearings(scene: Scene, model: str, bearings: Sequence[str] | None = Non
                 raise
             warnings.warn(f"{name} stays as it is: {error}", BearingModelWarning, stacklevel=2)
     changed = line.scene(scene)
-    for remark in [*_left_out(changed.parts, wanted), *_parting(model, mode_shifts(full, changed, highest_speed))]:
+    shifts = mode_shifts(full, changed, highest_speed, deflected=model != "improved")
+    for remark in [*_left_out(changed.parts, wanted), *_parting(model, shifts)]:
         warnings.warn(remark, BearingModelWarning, stacklevel=2)
     return changed
 

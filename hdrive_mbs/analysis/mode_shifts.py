@@ -58,15 +58,16 @@ def _change(full: FloatArray, model: FloatArray) -> FloatArray:
     return np.asarray(np.divide(found, full, out=np.ones_like(full), where=full != 0.0) - 1.0)
 
 
-def mode_shifts(full: Scene, model: Scene, highest_speed: float | None = None) -> tuple[ModeShifts, ...]:
+def mode_shifts(full: Scene, model: Scene, highest_speed: float | None = None, *, deflected: bool = True) -> tuple[ModeShifts, ...]:
     """Lateral modes up to a frequency [rad/s], at rest and at that speed of the reference shaft; without it the lowest at rest.
 
-    About the static deflection at the speed; a speed where there is none (a journal bearing at rest) is left out.
+    deflected : about the static deflection at the speed, and a speed where there is none (a journal bearing at rest) is
+        left out; False: about zero, which is faster and does where both have the same nonlinear laws
     """
     made = []
     for speed in (0.0,) if highest_speed is None else (0.0, highest_speed):
         try:
-            whole, part = (lateral_roots(scene, speed) for scene in (full, model))
+            whole, part = (lateral_roots(scene, speed, deflected=deflected) for scene in (full, model))
         except AnalysisError:
             continue
         count = LOWEST if highest_speed is None else int(np.sum(np.abs(whole) <= highest_speed))
@@ -75,12 +76,16 @@ def mode_shifts(full: Scene, model: Scene, highest_speed: float | None = None) -
     return tuple(made)
 
 
-def lateral_roots(scene: Scene, speed: float) -> ComplexArray:
+def lateral_roots(scene: Scene, speed: float, *, deflected: bool = True) -> ComplexArray:
     """Roots s of bending at a spin speed [rad/s] of the reference shaft, by frequency; axial and torsional motion held."""
     network = scene.network()
     lines = LineMatrices(network)
-    point = rotor_point(scene, speed, lines=lines)
-    system = lines.at(point.angles, point.speeds, point.states)
+    if deflected:
+        point = rotor_point(scene, speed, lines=lines)
+        system = lines.at(point.angles, point.speeds, point.states)
+    else:
+        speeds = {body.name: 0.0 if body.lateral else body.sense * body.ratio * speed for body in network.bodies}
+        system = lines.at(dict.fromkeys(lines.names, 0.0), speeds, {state.name: state.initial for state in network.states})
     kept = [k for k, body in enumerate(network.bodies) if body.lateral and not body.name.endswith(".z")]
     at = np.ix_(kept, kept)
     n = len(kept)

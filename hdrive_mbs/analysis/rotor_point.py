@@ -59,7 +59,7 @@ def rotor_point(scene: Scene, speed: float, *, lines: LineMatrices | None = None
         return lines.at(*state(q), twist.states).stiffness[np.ix_(lateral, lateral)]
 
     q = np.array([start.angles[name] if start is not None else 0.0 for name in names])
-    scale = max(1.0, float(np.max(np.abs(unbalanced(q)), initial=0.0)))
+    scale = max(1.0, *(float(np.max(np.abs(unbalanced(at)), initial=0.0)) for at in (q, 0.0 * q)))  # of the weights too
     q, force = _balanced(q, unbalanced, slope, TOLERANCE * scale)
     if float(np.linalg.norm(force)) > 1e-6 * scale:
         q, force = _held_then_released(np.zeros(len(names)), unbalanced, slope, scale)

@@ -20,6 +20,7 @@ from hdrive_mbs.analysis.time_response import Response, simulate
 from hdrive_mbs.analysis.torque_balance import TorqueBalance
 from hdrive_mbs.engine.solvers import Solver, Trapezoidal
 from hdrive_mbs.errors import AnalysisError, ParameterError, unknown_place
+from hdrive_mbs.network.network import Network
 from hdrive_mbs.network.rigid_mass import NOTHING, RigidMass
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray
@@ -107,7 +108,7 @@ def run_up(
         spin; where balls or teeth excite at a multiple of it, and for stiff nonlinear laws, look at estimate_error
     from_static : start in the static deflection at the initial speed and, if the line turns, on the steady orbits of
         the linearised line; else undeflected, which rings
-    initial_speed : of the reference shaft [rad/s]
+    initial_speed : of the reference shaft [rad/s]; if 0, that of a prescribed motion at t = 0
     places : whose peaks are wanted; every rotor if not given
     sample_step : as for simulate
     estimate_error : run with half the step too, return that run and the error of its peaks from their difference
@@ -176,6 +177,7 @@ def _run(
         raise ParameterError(f"accuracy = {accuracy:g}: must be between 1e-8 and 0.1 (relative error of peak amplitudes).")
     network, masses = scene.network(), _chosen(scene, places)
     line, ratios, reference, notes = FreeLine(scene), spin_ratios(scene), reference_shaft(scene), list[str]()
+    initial_speed = initial_speed or _prescribed_speed(network)
     fastest = fastest_speeds(network, duration, initial_speed)
     top = reference_speed(fastest, ratios) or 1.0
     criticals: tuple[CriticalSpeed, ...] = ()
@@ -220,6 +222,12 @@ def _run(
             response, figures = finer, better
     settings = {"accuracy": accuracy, "from_static": from_static, "places": tuple(masses), "step": reason}
     return _result(response, figures, reference, criticals, static, errors, settings, notes)
+
+
+def _prescribed_speed(network: Network) -> float:
+    """Speed of the reference shaft at t = 0 that a prescribed motion asks for; 0 without one."""
+    motion = next((item for item in network.motions if item.name != "ground" and item.ratio), None)
+    return float(motion.sense * motion.speed(np.float64(0.0)) / motion.ratio) if motion else 0.0
 
 
 def _chosen(scene: Scene, places: Sequence[str] | None) -> dict[str, RigidMass]:

@@ -58,11 +58,13 @@ def fastest_speeds(network: Network, duration: float, initial_speed: float) -> M
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LoweringWarning)  # the run itself says it
         assembly = assemble(turning)
-        starts = initial_values(turning, initial_speed, {})
+        start = initial_values(turning, initial_speed, {})
         while True:
             solver = Trapezoidal(step=duration / steps, newton_tolerance=1e-6)
             try:
-                raw = run(assembly, duration=duration, solver=solver, **starts)
+                raw = run(
+                    assembly, duration=duration, solver=solver, angles=start["angles"], speeds=start["speeds"], states=start["states"]
+                )
                 break
             except SimulationError:
                 steps *= 10
@@ -127,4 +129,4 @@ def _allowed(met: Sequence[CriticalSpeed], acceleration: float) -> list[float]:
     sizes = np.array(rows)
     largest = np.max(sizes, axis=0)
     share = np.max(sizes / np.where(largest > 0.0, largest, 1.0), axis=1)
-    return np.clip(1.0 / np.maximum(share, 1e-12), 1.0, LESSER).tolist()
+    return [float(value) for value in np.clip(1.0 / np.maximum(share, 1e-12), 1.0, LESSER)]

@@ -234,6 +234,19 @@ def test_a_noisy_saturated_sensor_is_refused_too() -> None:
     assert [finding.kind for finding in found] == ["saturated", "saturated"]
 
 
+def test_healthy_signals_of_many_kinds_are_not_refused() -> None:
+    rng = np.random.default_rng(7)
+    for _ in range(60):
+        times = np.arange(int(rng.integers(500, 6000))) * STEP
+        corners = np.interp(times, np.sort(rng.uniform(0.0, times[-1], 8)), rng.normal(size=8))
+        move = np.clip((times - 0.3) / rng.uniform(0.1, 1.0), 0.0, 1.0)
+        shapes = [np.sin(times * rng.uniform(1.0, 150.0)), corners, move**2 * (3.0 - 2.0 * move), np.cumsum(rng.normal(size=len(times)))]
+        shape = shapes[rng.integers(len(shapes))]
+        noisy = shape + np.ptp(shape) * rng.choice([0.0, 1e-4, 1e-2]) * rng.normal(size=len(times))
+        rounding = np.ptp(shape) * rng.choice([1e-6, 1e-4, 1e-3])
+        assert record(times, x=("m", rounding * np.round(noisy / rounding))).blocking == ()
+
+
 def test_rest_at_an_extreme_is_no_saturation() -> None:
     # an arm that swings out and stops: the encoder shows its largest value from then on
     angle = np.where(TIMES < 2.0, 0.5 * (1.0 - np.cos(0.5 * math.pi * TIMES)), 1.0)

@@ -226,6 +226,12 @@ def test_a_prescribed_motion_has_no_torque_balance() -> None:
     assert run.peak_amplitude["disc"] == pytest.approx(jeffcott_run().peak_amplitude["disc"], rel=5e-3)
 
 
+def test_a_prescribed_constant_speed_starts_on_the_steady_orbit() -> None:
+    parts = {"drive": hm.Motor(inertia=0.01, characteristic=hm.IdealSpeedMotor(motion=hm.ConstantSpeed(value=500.0)))}
+    run = hm.run_up(jeffcott(parts=parts), 0.05, accuracy=1e-6)
+    assert run.values["disc.whirl"] == pytest.approx(abs(steady(500.0)), rel=1e-5)
+
+
 def test_a_rotor_behind_a_gear_has_its_own_speed_and_sense() -> None:
     law = hm.LinearBearing.isotropic(radial=1800.0, damping=6.0, axial=1e4, axial_damping=10.0, tilt=5e3, tilt_damping=1.0)
     gear = hm.HarmonicDrive(
