@@ -168,6 +168,11 @@ class _Line:
         found: dict[str, str] = {}
         for partner in self._partners(name):
             part, _, flange = partner.partition(".")
+            if isinstance(self.parts.get(part), SupportedSection):
+                raise SceneError(
+                    f"the section between {part!r} and {name!r} belongs to {part!r} already, and a section serves one bearing. "
+                    "Leave one of the two full, or put a station between them."
+                )
             if not isinstance(self.parts.get(part), ShaftSection) or flange in found:
                 raise SceneError(
                     f"at {name!r} sits {part!r} too, and only a bearing by itself between two shaft sections can be replaced. "

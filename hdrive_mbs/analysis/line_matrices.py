@@ -7,13 +7,14 @@ frame); every other law is differentiated once and evaluated at each state.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.expression import Expression, TraceError, Value, derivative, evaluate, record, trace, variables
+from hdrive_mbs.expression import Expression, TraceError, Value, derivative, evaluate, record, scalar_function, trace, variables
 from hdrive_mbs.network.circulation import Circulation
 from hdrive_mbs.network.coupling import Gyroscope
 from hdrive_mbs.network.elements import Element, StateRate
@@ -72,6 +73,8 @@ class LineMatrices:
         n = len(self.names)
         self.mass = network.constant_mass.copy()
         self._damping, self._stiffness = np.zeros((n, n)), np.zeros((n, n))
+        self._matrices = np.zeros((2, n, n))  # damping and stiffness of matrix elements alone
+        self._laws = [element for element in network.elements if not isinstance(element, (MatrixElement, StateRate))]
         self._spinning: list[_Spinning] = []
         self._slopes: list[_Slope] = []
         self._plain: list[Element] = []
@@ -88,6 +91,8 @@ class LineMatrices:
             at = np.ix_(*[[self._index[name] for name in element.coordinates]] * 2)
             self._damping[at] += element.damping
             self._stiffness[at] += element.stiffness
+            self._matrices[0][at] += element.damping
+            self._matrices[1][at] += element.stiffness
         elif isinstance(element, Gyroscope):
             self._add_gyroscope(element.psi, element.theta, element.spin, element.polar)
         elif isinstance(element, Circulation):
@@ -129,6 +134,13 @@ class LineMatrices:
         matrix = self._stiffness if slope.kind == "angle" else self._damping
         matrix[slope.row, slope.column] -= float(np.asarray(evaluate(slope.value, {})))
 
+    @cached_property
+    def _compiled_slopes(self) -> tuple[list[str], Callable[..., tuple[float, ...]]]:
+        """Arguments, and a function of them that gives the slopes."""
+        values = [slope.value for slope in self._slopes]
+        arguments = sorted(variables(*values))
+        return arguments, scalar_function(values, arguments)
+
     def at(self, angles: Mapping[str, float], speeds: Mapping[str, float], states: Mapping[str, float] | None = None) -> LineSystem:
         """The matrices at forward angles, speeds and states of the coordinates (time 0)."""
         damping, stiffness = self._damping.copy(), self._stiffness.copy()
@@ -137,13 +149,13 @@ class LineMatrices:
             target = damping if part.kind == "damping" else stiffness
             target[part.at] += float(moment.speed(part.spin)) * part.matrix
         if self._slopes:
-            known: dict[str, Value] = {"t": moment.time}
-            known |= {f"angle:{name}": value for name, value in moment.angles.items()}
-            known |= {f"speed:{name}": value for name, value in moment.speeds.items()}
-            known |= {f"state:{name}": value for name, value in moment.states.items()}
-            for slope in self._slopes:
+            known = {"t": float(moment.time)}
+            for kind, values in (("angle", moment.angles), ("speed", moment.speeds), ("state", moment.states)):
+                known |= {f"{kind}:{name}": float(value) for name, value in values.items()}
+            arguments, function = self._compiled_slopes
+            for slope, value in zip(self._slopes, function(*(known[name] for name in arguments)), strict=True):
                 matrix = stiffness if slope.kind == "angle" else damping
-                matrix[slope.row, slope.column] -= float(np.asarray(evaluate(slope.value, known)))
+                matrix[slope.row, slope.column] -= value
         for element in self._plain:
             self._difference(element, moment, damping, stiffness)
         return LineSystem(self.names, self.mass, damping, stiffness)
@@ -198,5 +210,10 @@ class LineMatrices:
     def forces(self, angles: Mapping[str, float], speeds: Mapping[str, float], states: Mapping[str, float] | None = None) -> FloatArray:
         """Forces on all coordinates with nothing accelerating [N, N m], shape (n,); of balanced, upright rotors."""
         moment = self.network.moment(np.float64(0.0), angles, speeds, states or {})
-        total = self.network.torques(moment)
-        return np.array([float(np.asarray(total[name])) for name in self.names])
+        displacements, rates = (np.array([float(values[name]) for name in self.names]) for values in (moment.angles, moment.speeds))
+        total = -(self._matrices[0] @ rates + self._matrices[1] @ displacements)
+        for element in self._laws:
+            for name, value in element.contribution(moment).items():
+                if name in self._index:
+                    total[self._index[name]] += float(np.asarray(value))
+        return np.asarray(total)

@@ -32,7 +32,7 @@ class StationShapes:
         for channel in factors:
             owner, dot, direction = channel.rpartition(".")
             if dot and direction == "x" and owner not in network.places:
-                found[owner] = at.get(owner.rpartition(".")[0], np.nan)
+                found[owner] = at.get(owner, at.get(owner.rpartition(".")[0], np.nan))
         self.places = tuple(sorted(found, key=lambda place: (np.isnan(found[place]), found[place])))
         self.positions = np.array([found[place] for place in self.places])
         self._matrix = np.zeros((len(self.places), 6, len(names)))

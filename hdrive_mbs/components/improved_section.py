@@ -53,7 +53,8 @@ class ImprovedSection(SupportedSection):
     * of the ring x and y, when its damping would lag: (highest_speed d/k)^2 above 0.01, d/k of the ring held at the ends;
     * fixed-interface modes below 5 times ``highest_speed``; without that speed none.
 
-    Static motion is exact.  Leaves out the inertia of the ring on its bearing above all these frequencies; its
+    Static motion is exact.  Leaves out the motion of the ring by itself: of a ring that is not kept the inertia,
+    m w^2 x, is missing in the channels of the bearing's force, which acts on the shaft all the same; and its
     gyroscopic moment is that of its polar inertia shared between the ends.
     """
 
@@ -127,7 +128,7 @@ class ImprovedSection(SupportedSection):
             draft.add_element(Circulation.over(f"{name}.rotating_damping", (a, b), own, line.circulatory, line.rotating))
         spin = self._add_torsion(name, draft, a, b)
         rows = {key: factors_of(line.ring[k], a, b, own) for k, key in enumerate(LATERAL)}
-        add_place(name, draft, rows, line.ring_sag)
+        add_place(name, draft, self.ring_position(a, b), rows, line.ring_sag)
         self._add_housing(name, draft)
         self._add_law(name, draft, rows | {"phi": spin})
 

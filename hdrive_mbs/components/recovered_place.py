@@ -26,11 +26,12 @@ def factors_of(row: FloatArray, a: Station, b: Station, own: tuple[str, ...]) ->
     return factors
 
 
-def add_place(name: str, draft: Draft, rows: Mapping[str, Mapping[str, float]], sag: FloatArray | None = None) -> None:
+def add_place(name: str, draft: Draft, position: float, rows: Mapping[str, Mapping[str, float]], sag: FloatArray | None = None) -> None:
     """Channels of a place that is no station, as the full model has them: x ... theta and radial.
 
-    rows : direction -> factors of coordinates;  sag : offset per gravity in x, y and z, (5, 3)
+    position : on the axis [m];  rows : direction -> factors of coordinates;  sag : offset per gravity in x, y and z, (5, 3)
     """
+    draft.set_position(name, position)
 
     def offset(row: int) -> float:
         return 0.0 if sag is None else float(sag[row] @ np.array(draft.gravity))

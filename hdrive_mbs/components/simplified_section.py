@@ -33,8 +33,9 @@ class SimplifiedSection(SupportedSection):
     in each plane, with m = m_h + m_b, the transverse inertia J of the ring, stiffness k_h and damping b_h of the
     foundation, tilt stiffness k_psi and tilt damping b_psi of the bearing.  Source: seed M (9)-(15), where (10) has
     to have -psi, the first term of (12) and (13) the acceleration, and the sign is that of (15).  The mass in (10)
-    is that of the housing alone; the ring moves with it.  Axially the ring is held by the bearing (k_zz, b_zz).
-    Without a housing the bearing itself takes the place of the foundation.
+    is that of the housing alone; the ring moves with it.  Beyond section 5, the ring is held axially by the bearing
+    (k_zz, b_zz) and has its mass there, and its polar inertia is shared between the ends.  Without a housing the
+    bearing itself takes the place of the foundation.
 
     Leaves out stiffness and damping of the bearing across the axis, its nonlinear forces, a power term of the
     foundation, the play of the ring against the housing, and that the shaft bends differently on both sides of a
@@ -107,7 +108,7 @@ class SimplifiedSection(SupportedSection):
         add_spring(name, draft, a, b, self.torsion.stiffness, self.torsion.damping)
         self.add_spin(name, draft, self.ring_spin(a, b))
         rows = {key: factors_of(shapes[k], a, b, ()) for k, key in enumerate(LATERAL)}
-        add_place(name, draft, rows)
+        add_place(name, draft, self.ring_position(a, b), rows)
         if self.bearing.housing is not None:
             for key in "xy":
                 draft.add_displacement(f"{name}.housing.{key}", rows[key], "m", f"housing of {name} in {key}")

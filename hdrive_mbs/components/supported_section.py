@@ -72,6 +72,10 @@ class SupportedSection(Component):
             raise ParameterError(f"{name!r}: both ends are held by the ground, so the section does nothing; remove it.")
         return a, b
 
+    def ring_position(self, a: Station, b: Station) -> float:
+        """Where the bearing lies on the axis [m]."""
+        return a.position + self.left.length if not a.held else b.position - self.right.length
+
     def ring_spin(self, a: Station, b: Station) -> dict[str, float]:
         """Spin of the ring in the true sense as factors of the spins of the ends."""
         ends = [(station.node, float(share * station.sense)) for share, station in zip(self.torsion.ring, (a, b), strict=True)]

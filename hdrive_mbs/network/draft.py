@@ -55,6 +55,7 @@ class Draft:
         self._readings: list[Reading] = []
         self._sources: dict[str, Reading] = {}  # channel made from another channel -> that channel
         self._finished: tuple[Element, ...] = ()
+        self._positions: dict[str, float] = {}  # of places that are no flanges
 
     # -- places ---------------------------------------------------------------------------------
     def body(self, place: str, asked_by: str = "This") -> Node:
@@ -172,6 +173,10 @@ class Draft:
         self._channels[rate] = Channel(
             rate, f"{unit}/s", f"rate of the {doc}", lambda m: sum(f * m.speed(c) for c, f in factors.items()), f"{name}_acceleration"
         )
+
+    def set_position(self, place: str, position: float) -> None:
+        """Where on the axis a place lies [m] that is no station (the ring inside a condensed part)."""
+        self._positions[place] = position
 
     def add_matrix(
         self,
@@ -349,7 +354,7 @@ class Draft:
             place: self._nodes[node].position + self._offsets.get(place, 0.0)
             for place, node in self._flanges.items()
             if self._nodes[node].lateral
-        }
+        } | self._positions
         return Network(
             tuple(bodies),
             tuple(motions),

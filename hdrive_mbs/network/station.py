@@ -84,8 +84,10 @@ def station_bodies(
     """
     names = coordinate_names(node)
     inertias = (mass.mass, mass.mass, mass.mass, mass.inertia[0][0], mass.inertia[1][1])
+    group = "" if is_rotor and motion is None else node
     bodies = [
-        Body(name, inertia, 1, 0.0, UNITS[key], lateral=True) for name, inertia, key in zip(names[:5], inertias, LATERAL, strict=True)
+        Body(name, inertia, 1, 0.0, UNITS[key], lateral=True, group=group)
+        for name, inertia, key in zip(names[:5], inertias, LATERAL, strict=True)
     ]
     elements: list[Element] = []
     if motion is None:

@@ -67,7 +67,7 @@ class Records:
         own = [(record.name, finding) for record in self.records for finding in record.findings]
         clocks = []
         for sets in self.runs.values():
-            for one, other in itertools.combinations(sets, 2):
+            for one, other in itertools.combinations(_one_origin(sets), 2):
                 finding = clock_finding(one, other)
                 if finding is not None:
                     clocks.append((other.name, finding))
@@ -131,7 +131,7 @@ class Records:
         """
         if run not in self.runs:
             raise unknown_place("run", run, self.runs, "This collection")
-        sets = self.runs[run]
+        sets = _one_origin(self.runs[run])
         for _, finding in Records(records=sets).findings:
             if finding.kind == "clock" and finding.blocks:
                 raise RecordError(f"Run {run!r}: {finding.text}.")
@@ -168,3 +168,8 @@ class Records:
 
     def __repr__(self) -> str:
         return self.describe()
+
+
+def _one_origin(sets: tuple[Record, ...]) -> tuple[Record, ...]:
+    """Sensor sets whose times count from the same reading of the clock, that of the first."""
+    return tuple(record.with_origin(sets[0].origin) for record in sets)

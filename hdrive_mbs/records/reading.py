@@ -86,7 +86,10 @@ def read_records(
     for pattern in Request.of(files[0], channels, {}, None).channels or ():
         if not any(fits(pattern, name) or fits(pattern, base_name(name)) for record in found for name in record.channels):
             known = sorted({name for record in found for name in record.channels})
-            raise unknown_place("channel", pattern, known, "None of the files has it; what was read of them")
+            raise unknown_place("channel", pattern, known, "None of the files")
+    for name in {**(noise or {}), **(resolution or {})}:
+        if not any(name in record for record in found):
+            raise unknown_place("channel", name, sorted({channel.name for record in found for channel in record}), "None of the files")
     names = _run_names(files)
     found = [item.replacing(name=f"{names[item.source]}{item.name.removeprefix(item.run)}", run=names[item.source]) for item in found]
     made = []
@@ -158,6 +161,7 @@ def _read(path: Path, channels: Channels | None, units: Mapping[str, str], time:
     request = Request.of(path, channels, units, time)
     file_format = format_of(path)
     contents = file_format.contents(path, request.wanted)
+    request.check_units(contents)
     if not contents.columns and channels is None:
         skipped = "; ".join(f"{name}: {reason}" for name, reason in list(contents.skipped.items())[:10])
         raise FileFormatError(f"{path} ({file_format.name}) holds no column of numbers{f' ({skipped})' if skipped else ''}.")
@@ -181,17 +185,18 @@ def _read(path: Path, channels: Channels | None, units: Mapping[str, str], time:
     if request.channels is None:
         notes += tuple(f"{name} was not read: {reason}" for name, reason in contents.skipped.items())
         notes += tuple(f"{name} was not read: no time of its length beside it" for name in left)
+    read = [clock.times(request) for clock, _ in chosen]
+    first = min((origin for _, origin, _ in read), default=0.0)
     made = []
-    for clock, members in chosen:
-        times, origin, note = clock.times(request)
+    for (clock, members), (times, origin, note) in zip(chosen, read, strict=True):
         measured = _measured(members, request)
         made.append(
             Record(
                 name=f"{path.stem}{f':{clock.label}' if len(chosen) > 1 else ''}",
                 run=path.stem,
-                times=times,
+                times=times + (origin - first),  # clocks of one file keep their common origin
                 channels={item.name: item for item in measured},
-                origin=origin,
+                origin=first,
                 notes=_shortened((*note, *notes)),
                 source=str(path),
                 sha256=digest,

@@ -241,6 +241,10 @@ class Record:
             )
         return self.taking(inside)
 
+    def with_origin(self, origin: float) -> Record:
+        """The same samples with times that count from another reading of the clock [s]."""
+        return self if origin == self.origin else self.replacing(times=self.times + (self.origin - origin), origin=origin)
+
     def taking(self, chosen: np.ndarray) -> Record:
         """The samples with these indices, or with True in a mask."""
         return self.replacing(

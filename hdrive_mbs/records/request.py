@@ -58,6 +58,16 @@ class Request:
         )
         return next(patterns, given)
 
+    def check_units(self, contents: Contents) -> None:
+        """Raise PlaceError for a unit that was given for nothing: a slip in a name would leave another unit in force."""
+        if self.channels is not None:  # what is not chosen need not have been read
+            return
+        columns = {column.name: column.values.ndim for column in contents.columns}
+        for pattern in self.units:
+            numbered = base_name(pattern) in columns and columns[base_name(pattern)] == 2
+            if not numbered and not any(fits(pattern, name) for name in (*columns, *contents.skipped)):
+                raise unknown_place("channel", pattern, list(columns)[:60], str(self.path))
+
     def check_selected(self, found: Iterable[Column], contents: Contents) -> None:
         """Raise PlaceError for a chosen channel that the file lacks, FileFormatError for one that cannot be read."""
         names = [*(column.name for column in found), *(column.name for column in contents.columns if column.clock or is_time(column.name))]

@@ -439,6 +439,18 @@ def test_a_bearing_that_cannot_change_stays_with_a_warning_and_is_refused_by_nam
     )
     with pytest.raises(hm.SceneError, match="at 'bearing_a' sits 'disc' too"):
         with_bearings(crowded, "simplified", ["bearing_a"])
+    pair = hm.Scene(
+        name="pair",
+        parts={**full.parts, "bearing_c": full.parts["bearing_b"], "section_5": full.parts["section_4"]},
+        connections=[
+            tuple("bearing_c" if place == "rotor_1" else place for place in full.connections[0]),
+            ("rotor_2", "section_5", "rotor_1"),
+        ],
+    )
+    assert any(
+        "bearing_c stays as it is: the section between 'bearing_a' and 'bearing_c' belongs to 'bearing_a'" in t
+        for t in remarks(pair, "improved")
+    )
     with pytest.raises(hm.PlaceError, match=r"No bearing 'bearing_c'. This scene has: bearing_a, bearing_b"):
         with_bearings(full, "improved", ["bearing_c"])
     with pytest.raises(hm.ParameterError, match="model = 'best': must be one of full, merged, simplified, improved"):

@@ -403,6 +403,39 @@ def test_groups_with_times_of_their_own_become_sensor_sets_of_one_run(tmp_path: 
     assert len(hm.read_record(tmp_path / "run.h5", channels=["probe/x"])) == 800
 
 
+def test_sensor_sets_with_clocks_since_1970_keep_their_common_time(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "run.h5", "w") as file:
+        for group, start in (("encoder", 1_795_255_200.25), ("probe", 1_795_255_200.0)):
+            file[f"{group}/time"] = start + TIMES
+            file[f"{group}/x"] = np.sin(9.0 * (start - 1_795_255_200.0 + TIMES))
+            file[f"{group}/time"].attrs["unit"] = "s"
+            file[f"{group}/x"].attrs["unit"] = "m"
+    records = hm.read_records(tmp_path / "run.h5")
+    assert [record.times[0] for record in records] == pytest.approx([0.25, 0.0], abs=1e-6)
+    assert {record.origin for record in records} == {1_795_255_200.0}
+    shifted = records["run:encoder"].with_origin(1_795_255_200.25)
+    assert shifted.times[0] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_unit_for_a_channel_that_does_not_exist_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(hm.PlaceError, match=r"No channel 'sped'.*has: time, speed, torque"):
+        hm.read_record(csv_file(tmp_path), units={"sped": "rad/s"})
+    with pytest.raises(hm.PlaceError, match=r"No channel 'sped'. None of the files has: speed, torque"):
+        hm.read_records([csv_file(tmp_path)], noise={"sped": 1.0})
+
+
+def test_an_empty_table_of_any_kind_is_refused(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    arrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    with h5py.File(tmp_path / "run.h5", "w") as file:
+        file["time"] = np.zeros(0)
+    parquet.write_table(arrow.table({"time [s]": np.zeros(0), "x [m]": np.zeros(0)}), tmp_path / "run.parquet")
+    for name in ("run.h5", "run.parquet"):
+        with pytest.raises(hm.FileFormatError, match="holds no column of numbers"):
+            hm.read_record(tmp_path / name)
+
+
 def test_mdf_groups_formulas_and_invalid_samples(tmp_path: Path) -> None:
     asammdf = pytest.importorskip("asammdf")
     slow = TIMES[::4]

@@ -14,14 +14,15 @@ from pathlib import Path
 from typing import Any
 
 import numba
+EXTRA = dict(inline="always")
 
 
 @cache
 def _cache_folder(home: Path) -> str | None:
     """Folder for compiled code of these sources, or None where nothing can be written."""
     digest = hashlib.sha256()
-    for source in sorted(home.glob("*.py")):
-        digest.update(source.read_bytes())
+    for source in [Path(__file__), *sorted(home.glob("*.py"))]:
+        digest.update(source.name.encode() + source.read_bytes())
     folder = home / "__pycache__" / f"compiled-{digest.hexdigest()[:12]}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -36,6 +37,6 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = folder or before
     try:
-        return numba.njit(cache=folder is not None, error_model="numpy")(function)  # type: ignore[no-any-return]
+        return numba.njit(cache=folder is not None, error_model="numpy", **EXTRA)(function)  # type: ignore[no-any-return]
     finally:
         numba.config.CACHE_DIR = before

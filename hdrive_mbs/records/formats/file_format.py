@@ -105,7 +105,12 @@ class Format:
 
         for name in self.needs:
             require_package(name, self.name, path)
-        return read_apart(self, path, wanted) if self.apart else self.read(path, wanted)
+        found = read_apart(self, path, wanted) if self.apart else self.read(path, wanted)
+        empty = {column.name: "a column without values" for column in found.columns if not column.values.size}
+        if not empty:
+            return found
+        columns = tuple(column for column in found.columns if column.values.size)
+        return Contents(columns=columns, skipped={**found.skipped, **empty}, notes=found.notes)
 
 
 @functools.cache

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.withheld.plant.rotor_plant import (
+from benchmarks.withheld.plant.rotor_line.equations import (
     ACTIVE_PLAIN,
     BALL,
     BALL_RATE,
@@ -34,7 +34,7 @@ PROBES = {"r1_x": 4, "r1_y": 5, "r2_x": 12, "r2_y": 13}
 ACCELEROMETERS = {"h1_ax": HOUSING, "h1_ay": HOUSING + 1, "h2_ax": HOUSING + 2, "h2_ay": HOUSING + 3}
 
 
-class Unstable(RuntimeError):
+class UnstableError(RuntimeError):
     """The plant left its range: the planted cause is too strong."""
 
 
@@ -100,7 +100,7 @@ def static_deflection(machine: Machine, causes: Causes) -> FloatArray:
         q[:active] += change * min(1.0, 2e-5 / max(float(np.max(np.abs(change))), 1e-30))
         pseudo = min(pseudo * (4.0 if size < before else 0.5), 1e6)
         before = size
-    raise Unstable("no static deflection found: the bench does not rest with the planted cause")
+    raise UnstableError("no static deflection found: the bench does not rest with the planted cause")
 
 
 def run(machine: Machine, causes: Causes, record: str, *, tolerance: float = TOLERANCE, rest: FloatArray | None = None) -> Run:
@@ -117,5 +117,5 @@ def run(machine: Machine, causes: Causes, record: str, *, tolerance: float = TOL
     active = STATES if causes.internal[0] == 2.0 else ACTIVE_PLAIN
     steps = integrate(y, goal, force, RATE, GAIN, LIMIT, machine, causes, error_scales(tolerance), active, states, torque, slopes)
     if steps < 0:
-        raise Unstable(f"{record}: the plant left its range (0.05 m); the planted cause is too strong")
+        raise UnstableError(f"{record}: the plant left its range (0.05 m); the planted cause is too strong")
     return Run(np.arange(goal.size) / RATE, states, slopes, torque, force, steps)

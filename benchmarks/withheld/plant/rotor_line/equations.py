@@ -14,13 +14,14 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.withheld.plant.rotor_laws import (
+from benchmarks.withheld.plant.compiled import compiled
+from benchmarks.withheld.plant.rotor_line.laws import (
     bearing_force,
     cross_force,
+    floor_force,
     misalignment_force,
     openness,
     pass_force,
@@ -79,8 +80,8 @@ class Causes(NamedTuple):
     drift: FloatArray  # (2, 2): share, time constant
     friction: FloatArray  # (2, 3): contact stiffness, force, length over which the force varies
     quadratic: FloatArray  # (2,): N s^2/m^2
-    floor: FloatArray  # law, support, force 1, frequency 1, force 2, frequency 2, direction, phase
-    hidden: FloatArray  # law, support, mass, stiffness x, y, damping
+    floor: FloatArray  # law, support, ... as floor_force
+    hidden: FloatArray  # law, support, mass, stiffness 1, 2, damping, angle of axis 1
     rub: FloatArray  # law, ... as rub_force, last the station
     misalignment: FloatArray
     ripple: FloatArray
@@ -95,12 +96,12 @@ def no_causes() -> Causes:
     return Causes(
         bow=np.zeros((4, 4)), internal=np.zeros(3), crack=np.zeros(7), bearing=np.zeros((2, 6)), cross=np.zeros((2, 4)),
         whirl=np.zeros(10), passing=np.zeros(10), support=np.zeros((2, 4)), drift=np.zeros((2, 2)), friction=np.zeros((2, 3)),
-        quadratic=np.zeros(2), floor=np.zeros(8), hidden=np.zeros(6), rub=np.zeros(11), misalignment=np.zeros(10),
+        quadratic=np.zeros(2), floor=np.zeros(8), hidden=np.zeros(7), rub=np.zeros(11), misalignment=np.zeros(10),
         ripple=np.zeros(11), pull=np.zeros(7), ball=np.zeros(6), windage=np.zeros(4), seal=np.zeros(4),
     )  # fmt: skip
 
 
-@numba.njit
+@compiled
 def _section(k, L, EI, beta, s, v, f):
     """Add the elastic and material-damping forces of section k: f -= K (s + beta v); both planes."""
     c = EI / L**3
@@ -116,7 +117,7 @@ def _section(k, L, EI, beta, s, v, f):
         f[j + t] -= g * c * L * (6.0 * (a - d) + L * (2.0 * b + 4.0 * e))
 
 
-@numba.njit
+@compiled
 def _crack(row, length, bending, angle, s):
     """Take the rotation at the crack's hinge out of the deformation s of its section."""
     k = int(row[1])
@@ -142,7 +143,7 @@ def _crack(row, length, bending, angle, s):
     s[j + 2] += ry
 
 
-@numba.njit
+@compiled
 def slope(t, y, torque, hx, hy, M, C, out, s, w, f, r):
     """dy/dt at time t with the held torque and hammer; s, w, f, r are working arrays of LATERAL + 4."""
     n, p = COORDINATES, MORE
@@ -253,7 +254,7 @@ def slope(t, y, torque, hx, hy, M, C, out, s, w, f, r):
         if C.passing[0] > 0.0 and int(C.passing[8]) == b:
             P = C.passing
             th = q[SPIN + st]
-            zd[PASS] = P[1] * o * (1.0 + P[2] * wander(0.31 * th + P[9], P[9]))
+            zd[PASS] = P[1] * o * (1.0 + P[2] * wander(0.02 * th + P[9], P[9]))
             gx, gy = pass_force(P, z[PASS], th, o)
             fx += gx
             fy += gy
@@ -266,13 +267,9 @@ def slope(t, y, torque, hx, hy, M, C, out, s, w, f, r):
     # --- supports
     for b in range(2):
         h = HOUSING + 2 * b
-        series = C.hidden[0] == 2.0 and int(C.hidden[1]) == b
         fade = 1.0 - C.drift[b, 0] * (1.0 - math.exp(-t / C.drift[b, 1])) if C.drift[b, 0] != 0.0 else 1.0
         for a in range(2):
             x, vx = q[h + a], v[h + a]
-            if series:
-                x -= q[HIDDEN + a]
-                vx -= v[HIDDEN + a]
             k, d = M.support_stiffness[b, a] * fade, M.support_damping[b, a]
             law = int(C.support[b, 0])
             if (law == 2 and a == 0) or ((law == 1 or law == 3) and a == 1):
@@ -287,25 +284,24 @@ def slope(t, y, torque, hx, hy, M, C, out, s, w, f, r):
                 zd[i] = C.friction[b, 0] * (vx - abs(vx) * z[i] / top)
                 F += z[i]
             f[h + a] -= F
-            if series:
-                f[HIDDEN + a] += F
     if C.floor[0] > 0.0:
         h = HOUSING + 2 * int(C.floor[1])
-        F = C.floor[2] * math.sin(C.floor[3] * t + C.floor[7]) + C.floor[4] * math.sin(C.floor[5] * t + 2.0 * C.floor[7])
+        F = floor_force(C.floor, t)
         f[h] += F * math.cos(C.floor[6])
         f[h + 1] += F * math.sin(C.floor[6])
     # --- hidden mass
     if C.hidden[0] > 0.0:
         h = HOUSING + 2 * int(C.hidden[1])
-        for a in range(2):
-            k = C.hidden[3 + a]
-            if C.hidden[0] == 1.0:
-                F = k * (q[HIDDEN + a] - q[h + a]) + C.hidden[5] * (v[HIDDEN + a] - v[h + a])
-                f[h + a] += F
-            else:
-                F = k * q[HIDDEN + a] + C.hidden[5] * v[HIDDEN + a]
-            f[HIDDEN + a] -= F
-            out[n + HIDDEN + a] = f[HIDDEN + a] / C.hidden[2] - (M.gravity if a == 1 else 0.0)
+        cs, sn = math.cos(C.hidden[6]), math.sin(C.hidden[6])
+        x, yy = q[HIDDEN] - q[h], q[HIDDEN + 1] - q[h + 1]
+        vx, vy = v[HIDDEN] - v[h], v[HIDDEN + 1] - v[h + 1]
+        gx = C.hidden[3] * (cs * x + sn * yy) + C.hidden[5] * (cs * vx + sn * vy)
+        gy = C.hidden[4] * (-sn * x + cs * yy) + C.hidden[5] * (-sn * vx + cs * vy)
+        fx, fy = cs * gx - sn * gy, sn * gx + cs * gy
+        f[h] += fx
+        f[h + 1] += fy
+        out[n + HIDDEN] = -fx / C.hidden[2]
+        out[n + HIDDEN + 1] = -fy / C.hidden[2] - M.gravity
     else:
         out[n + HIDDEN], out[n + HIDDEN + 1] = 0.0, 0.0
     # --- drive end and rotors
@@ -375,7 +371,7 @@ _STAGES = np.array([
 _DIFFERENCE = np.array([71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40])
 
 
-@numba.njit
+@compiled
 def integrate(y, reference, hammer, rate, gain, limit, M, C, scale, active, states, torques, slopes):
     """Run the bench: reads the speed at each sample, holds the torque, and stores state and slope there. Number of steps, or -1."""
     h0 = 1.0 / rate

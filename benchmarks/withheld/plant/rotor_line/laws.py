@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import math
 
-import numba
+from benchmarks.withheld.plant.compiled import compiled
 
 _POINT_FIVE_PI = 0.5 * math.pi
 
 
-@numba.njit(inline="always")
+@compiled
 def bearing_force(row, k, d, ux, uy, vx, vy):
     """Radial force on the inner ring from the displacement and velocity of the ring in its housing.
 
@@ -34,9 +34,8 @@ def bearing_force(row, k, d, ux, uy, vx, vy):
         if p > 0.0:
             nx, ny = ux / r, uy / r
             rate = nx * vx + ny * vy
-            if law == 1:
-                normal = (1.0 - row[2]) * k * p + (1.0 - row[3]) * d * rate
-            else:
+            normal = (1.0 - row[2]) * k * p + (1.0 - row[3]) * d * rate
+            if law == 2:
                 normal = row[4] * p ** (10.0 / 9.0) * (1.0 + row[5] * rate)
             if normal > 0.0:
                 fx -= normal * nx
@@ -53,7 +52,7 @@ def bearing_force(row, k, d, ux, uy, vx, vy):
     return -k * g * ux - d * vx, -k * g * uy - d * vy
 
 
-@numba.njit(inline="always")
+@compiled
 def cross_force(row, speed, ux, uy):
     """Skew force of a bearing: F = s (-(1 + a) uy, (1 - a) ux), s = row[1] g(speed)/(1 + (r/row[3])^2).
 
@@ -71,7 +70,7 @@ def cross_force(row, speed, ux, uy):
     return -s * (1.0 + row[2]) * uy, s * (1.0 - row[2]) * ux
 
 
-@numba.njit(inline="always")
+@compiled
 def piecewise(law, k, low, high, part, y):
     """Spring k with a softened range: 1 softer by part above low; 2 softer within |y| < high; 3 softer between low and high."""
     if law == 1:
@@ -89,7 +88,7 @@ def piecewise(law, k, low, high, part, y):
     return k * (low + part * (high - low) + (y - high))
 
 
-@numba.njit(inline="always")
+@compiled
 def rub_force(row, x, y, vx, vy, spin):
     """Normal and friction force of a rotor on its stator, and the torque on the spin.
 
@@ -123,7 +122,7 @@ def rub_force(row, x, y, vx, vy, spin):
     return -n * nx + mu * n * ny, -n * ny - mu * n * nx, -mu * n * row[8]
 
 
-@numba.njit(inline="always")
+@compiled
 def misalignment_force(row, angle, torque, x, y):
     """Forces and moments (Fx, Fy, Mpsi, Mtheta) of a misaligned coupling at the drive end.
 
@@ -151,7 +150,7 @@ def misalignment_force(row, angle, torque, x, y):
     return g * fx, g * fy, -g * row[9] * fy, g * row[9] * fx
 
 
-@numba.njit(inline="always")
+@compiled
 def openness(law, moment, angle, scale):
     """How far a crack is open, 0 to 1.
 
@@ -167,7 +166,7 @@ def openness(law, moment, angle, scale):
     return min(max(0.5 + 0.5 * moment / scale, 0.0), 1.0)
 
 
-@numba.njit(inline="always")
+@compiled
 def ripple_torque(row, angle, torque):
     """Motor torque beside the command: sum of A_n sin(order_n angle + p_n), times share + |torque|/100 N m for law 2."""
     law = int(row[0])
@@ -181,7 +180,7 @@ def ripple_torque(row, angle, torque):
     return t
 
 
-@numba.njit(inline="always")
+@compiled
 def pass_force(row, phase, spin_angle, speed):
     """Signed size and direction of a ball-pass force between ring and housing: (Fx, Fy on the ring).
 
@@ -202,7 +201,22 @@ def pass_force(row, phase, spin_angle, speed):
     return pulse * loaded * math.cos(d), pulse * loaded * math.sin(d)
 
 
-@numba.njit(inline="always")
+@compiled
 def wander(a, b):
     """A slow wander between -1 and 1 without a period, from two seeds in radians."""
     return (math.sin(a) + math.sin(1.618 * a + b) + math.sin(2.414 * a + 2.0 * b)) / 3.0
+
+
+@compiled
+def floor_force(row, t):
+    """Force of the floor on a housing: row = (law, support, A1, w1, A2, w2, direction, phase).
+
+    1 two fixed frequencies: A1 sin(w1 t + phase) + A2 sin(w2 t + 2 phase); 2 shocks A1 exp(-A2 s) sin(w1 s), s since the last one,
+    one every w2 seconds, the first at phase seconds. Has nothing to do with the rotation.
+    """
+    if row[0] == 1.0:
+        return row[2] * math.sin(row[3] * t + row[7]) + row[4] * math.sin(row[5] * t + 2.0 * row[7])
+    if t < row[7]:
+        return 0.0
+    s = (t - row[7]) % row[5]
+    return row[2] * math.exp(-row[4] * s) * math.sin(row[3] * s)

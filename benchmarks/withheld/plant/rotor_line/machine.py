@@ -12,7 +12,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from benchmarks.withheld.plant.rotor_plant import Machine
+from benchmarks.withheld.draws import log_normal
+from benchmarks.withheld.plant.rotor_line.equations import Machine
 
 GRAVITY = 9.81
 NOMINAL: Mapping[str, float] = MappingProxyType({
@@ -33,7 +34,7 @@ TOLERANCE: Mapping[str, float] = MappingProxyType({
 
 def disturbed(rng: np.random.Generator) -> dict[str, float]:
     """One example of the bench within its tolerances."""
-    return {name: value * math.exp(TOLERANCE[name] * rng.standard_normal()) if name in TOLERANCE else value for name, value in NOMINAL.items()}
+    return {name: log_normal(rng, value, TOLERANCE.get(name, 0.0)) for name, value in NOMINAL.items()}
 
 
 def machine(values: Mapping[str, float], *, gravity: float = GRAVITY) -> Machine:

@@ -1,0 +1,1 @@
+"""The rotor bench, simulated by a plant of its own."""
