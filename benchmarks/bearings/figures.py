@@ -62,7 +62,6 @@ def _distances(histories: Histories, rotor: str, number: int) -> Figure:
                 peak = run.peak(rotor)
                 text = f"{model}: {1e6 * peak.amplitude:.1f} \u00b5m at {peak.speed:.1f} rad/s" if point == "C" else None
                 ax.plot(speed, 1e6 * _thin(run, distance)[1], label=text, **LOOKS[model])
-            ax.set_ylim(bottom=0.0)
             if column == 0:
                 what = "geometric centre C" if point == "C" else "mass centre P"
                 ax.set_ylabel(f"{what}: distance\nfrom the axis [\u00b5m, 0-peak]")
@@ -70,6 +69,8 @@ def _distances(histories: Histories, rotor: str, number: int) -> Figure:
                 ax.set_title(case.name, pad=HEAD)
                 legend_above(ax, columns=1)
         grid[-1, column].set_xlabel(SPEED)
+    for ax in grid[:, 0]:
+        ax.set_ylim(bottom=0.0)  # only now: it ends the automatic scale of the whole row
     what = "distances of C and P from the axis" if both else "distance from the axis (it is balanced, so P and C are one)"
     figure.suptitle(f"Fig. {number}: {rotor.replace('_', ' ')}, {what}", x=0.01, ha="left")
     return figure

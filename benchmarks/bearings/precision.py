@@ -19,7 +19,6 @@ from benchmarks.bearings.cases import MODELS, PAPER, Case
 from benchmarks.bearings.run_up import ROTORS, Peak, RunUp, run_up
 from benchmarks.bearings.stability import eigenvalues, longest_step
 from benchmarks.speed.study import time_at
-from hdrive_mbs.engine.assembly import Assembly, assemble
 from hdrive_mbs.errors import SimulationError
 
 IMPLICIT, FIXED, ADAPTIVE = "implicit", "explicit, fixed step", "explicit, adaptive"
@@ -61,7 +60,6 @@ class Runs:
     case: Case
     model: str
     scene: hm.Scene
-    assembly: Assembly
     fastest: float
     step_limit: float
     settings: Sequence[Setting]
@@ -77,14 +75,13 @@ class Runs:
         scene = case.scene(model)
         values = eigenvalues(scene)
         limit = longest_step(values)
-        # the run with the fewest samples last: the engine keeps those of the last one
         shares = [share for share in SHARES if share == SHARES[-1] or (share * limit >= SHORT and not quick)]
         chosen = [Setting(FIXED, share * limit, hm.RungeKutta4(step=share * limit)) for share in shares]
         if case in PAPER and not quick:
             pairs = [(tol, hm.DormandPrince(relative_tolerance=tol, absolute_tolerance=1e-2 * tol)) for tol in TOLERANCES]
             chosen += [Setting(ADAPTIVE, tol, solver) for tol, solver in pairs]
         chosen += [Setting(IMPLICIT, h, hm.Trapezoidal(step=h, newton_tolerance=1e-5)) for h in (STEPS[-3:-1] if quick else STEPS)]
-        return cls(case, model, scene, assemble(scene.network()), float(abs(values).max()), limit, chosen)
+        return cls(case, model, scene, float(abs(values).max()), limit, chosen)
 
     def due(self, setting: Setting) -> bool:
         """Whether to run it once more."""
@@ -93,7 +90,7 @@ class Runs:
     def once(self, setting: Setting, duration: float) -> None:
         """Run it and keep what it gives."""
         try:
-            run = run_up(self.scene, self.assembly, duration, setting.solver)
+            run = run_up(self.scene, duration, setting.solver)
         except SimulationError as error:
             self.failures[setting] = str(error).split(" with ")[0]
             return
@@ -161,7 +158,7 @@ class Runs:
             )
         times = {kind: self.time_at_target(kind) for kind in SOLVERS}
         return {
-            "coordinates": len(self.assembly.network.bodies),
+            "coordinates": len(self.scene.network().bodies),
             "fastest_eigenvalue": self.fastest,
             "longest_explicit_step": self.step_limit,
             "converged_peaks": {r: {"amplitude": p.amplitude, "speed": p.speed} for r, p in self.converged.items()},

@@ -117,7 +117,7 @@ def _times(found: Findings) -> str:
         for model, runs in of.items():
             kind, seconds = runs.best()
             rows.append((
-                case.name, model, len(runs.assembly.network.bodies), f"{runs.fastest:.3g}", f"{1e6 * runs.step_limit:.1f}",
+                case.name, model, len(runs.scene.network().bodies), f"{runs.fastest:.3g}", f"{1e6 * runs.step_limit:.1f}",
                 *(_seconds(runs.time_at_target(solver)) for solver in SOLVERS),
                 f"{seconds / found.duration:.3f} ({kind})", f"{found.time_ratio(case, model):.2f}",
             ))  # fmt: skip

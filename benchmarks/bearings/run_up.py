@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 import hdrive_mbs as hm
 from hdrive_mbs.analysis.time_response import read_over, run_moment
-from hdrive_mbs.engine.assembly import Assembly
+from hdrive_mbs.engine.assembly import assemble
 from hdrive_mbs.engine.simulation import run
 
 FloatArray = npt.NDArray[np.float64]
@@ -99,9 +99,13 @@ class RunUp:
         return np.interp(speeds, lowest[last], values[last], left=np.nan, right=np.nan)
 
 
-def run_up(scene: hm.Scene, assembly: Assembly, duration: float, solver: hm.Solver) -> RunUp:
+def run_up(scene: hm.Scene, duration: float, solver: hm.Solver) -> RunUp:
     """Run the line up from rest.  Raises SimulationError when it diverges."""
-    raw = run(assembly, duration=duration, solver=solver, angles={}, speeds={}, states={})
+    assembly = assemble(scene.network())
+    try:
+        raw = run(assembly, duration=duration, solver=solver, angles={}, speeds={}, states={})
+    finally:
+        assembly.mbs.Reset()  # the engine would keep all samples for as long as the process lives
     moment = run_moment(assembly.network, raw)
     channels = {channel.name: channel for channel in assembly.network.channels}
 

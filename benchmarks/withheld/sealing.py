@@ -64,7 +64,9 @@ def open_key(path: Path, commitments: Path, *, answered: Iterable[str]) -> dict[
     committed = json.loads(commitments.read_text(encoding="utf-8"))
     missing = sorted(set(committed) - set(answered))
     if missing:
-        raise SealError(f"{len(missing)} of {len(committed)} cases have no answer yet ({', '.join(missing[:3])}); answer all of them first.")
+        raise SealError(
+            f"{len(missing)} of {len(committed)} cases have no answer yet ({', '.join(missing[:3])}); answer all of them first."
+        )
     with zipfile.ZipFile(path) as archive:
         key = json.loads(archive.read("key.json"))
     labels = {}
@@ -73,6 +75,8 @@ def open_key(path: Path, commitments: Path, *, answered: Iterable[str]) -> dict[
             raise SealError(f"{path.name} has no truth for case {case}; it belongs to another set.")
         item = Sealed(key[case]["salt"], key[case]["text"])
         if item.commitment != commitment:
-            raise SealError(f"The truth of case {case} in {path.name} does not belong to its commitment; the key or the commitments were changed.")
+            raise SealError(
+                f"The truth of case {case} in {path.name} does not belong to its commitment; the key or the commitments were changed."
+            )
         labels[case] = json.loads(item.text)
     return labels

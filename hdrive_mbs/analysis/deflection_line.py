@@ -93,7 +93,7 @@ def static_deflection(scene: Scene, speed: float = 0.0) -> StaticDeflection:
     weight = {key: _weight(network, moment, key) for key in "xy"}
     return StaticDeflection(
         scene=scene,
-        status="; ".join(["complete", *_carried(loads, weight)]),
+        status="; ".join(["complete", *(_carried(loads, weight) if _tells_all(network) else [])]),
         settings={"speed": float(speed)},
         speed=float(speed),
         places=places,
@@ -147,6 +147,13 @@ def _weight(network: Network, moment: Moment, key: str) -> float:
                 if name.endswith(moving) and not name.endswith(f".housing.{key}"):
                     total += float(np.asarray(force))
     return total
+
+
+def _tells_all(network: Network) -> bool:
+    """Whether loads and weights can be told apart: not where rings are condensed with housings or have no force of their own."""
+    return all(place in force_places(network) for place in network.positions if place not in network.places) and not any(
+        element.falling is not None for element in network.matrices
+    )
 
 
 def _carried(loads: Mapping[str, FloatArray], weight: Mapping[str, float]) -> list[str]:

@@ -157,7 +157,7 @@ def campbell(
     stable = np.array([_is_stable(parts, row) for row in range(len(grid))])
     return WhirlCampbell(
         scene=scene,
-        status=_status(grid, stable, thresholds),
+        status=_status(grid, stable, thresholds, any(np.any(part.roots(row).decay < 0.0) for part in parts for row in range(len(grid)))),
         settings={"speeds": f"{grid[0]:g} .. {grid[-1]:g} rad/s, {len(grid)} points", "count": count},
         speeds=grid,
         frequencies=values.imag,
@@ -340,9 +340,12 @@ def _is_stable(parts: list[BlockBranches], row: int) -> bool:
     return True
 
 
-def _status(grid: FloatArray, stable: npt.NDArray[np.bool_], thresholds: list[_Threshold]) -> str:
+def _status(grid: FloatArray, stable: npt.NDArray[np.bool_], thresholds: list[_Threshold], runs_away: bool) -> str:
     notes = ["complete"]
     notes += [f"{threshold.note} {threshold.speed:.6g} rad/s (mode {threshold.branch + 1})" for threshold in thresholds]
     if not np.all(stable) and not thresholds:
-        notes.append(f"unstable from {grid[int(np.argmin(stable))]:.6g} rad/s" if np.any(stable) else "unstable at all speeds")
+        where = f"at {int(np.sum(~stable))} speeds, first {grid[int(np.argmin(stable))]:.6g} rad/s" if np.any(stable) else "at all speeds"
+        notes.append(f"unstable {where}")
+    if runs_away:
+        notes.append("a motion grows without oscillating (a spring that pushes, or a motor whose torque rises with the speed)")
     return "; ".join(notes)

@@ -424,3 +424,20 @@ def test_the_second_root_of_a_crossing_is_not_taken_for_the_first() -> None:
     result = hm.campbell(overhung_disc(), [0.0, 400.0], count=4)
     forward = [speed for speed, word in zip(result.critical_speeds, result.critical_whirl, strict=True) if word == "forward"]
     assert forward == pytest.approx([root], rel=1e-10)
+
+
+def test_a_motor_whose_torque_rises_with_the_speed_is_named_as_what_grows() -> None:
+    # J w' = a w runs away at the rate a/J; the train behind it swings as ever
+    scene = hm.Scene(
+        name="runaway",
+        parts={
+            "motor": hm.Motor(inertia=0.5, characteristic=lambda w: 0.3 * w),
+            "shaft": hm.Shaft(stiffness=200.0, damping=0.5),
+            "disc": hm.Inertia(inertia=1.5),
+        },
+        connections=[("motor", "shaft", "disc")],
+    )
+    result = hm.campbell(scene, [10.0, 20.0])
+    assert not result.stable.any()
+    assert "a motion grows without oscillating" in result.status
+    assert hm.whirl_modes(scene, 10.0).decay_rates.min() == pytest.approx(-0.3 / 2.0, rel=1e-3)

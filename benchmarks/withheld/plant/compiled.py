@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 import numba
-EXTRA = dict(inline="always")
 
 
 @cache
@@ -32,11 +31,14 @@ def _cache_folder(home: Path) -> str | None:
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
-    """The function as machine code; divisions follow IEEE rules."""
+    """The function as machine code; divisions follow IEEE rules.
+
+    Hand small tuples of numbers to laws: arrays inside a tuple cost a reference count at every call.
+    """
     folder = _cache_folder(Path(function.__code__.co_filename).parent)
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = folder or before
     try:
-        return numba.njit(cache=folder is not None, error_model="numpy", **EXTRA)(function)  # type: ignore[no-any-return]
+        return numba.njit(cache=folder is not None, error_model="numpy")(function)  # type: ignore[no-any-return]
     finally:
         numba.config.CACHE_DIR = before

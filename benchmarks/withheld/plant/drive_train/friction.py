@@ -5,16 +5,13 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
-from benchmarks.withheld.case import Array
 from benchmarks.withheld.plant.compiled import compiled
 
 NONE, SMOOTH, DAHL, BANK = 0.0, 1.0, 2.0, 3.0
 
 
 class Friction(NamedTuple):
-    """Friction at motor, wave generator and load (arrays of three).
+    """Friction of one body.
 
     Level: L(w) = C (1 + s/(1 + |w/w_s|^n)) (1 + a w/(|w| + w_s)); the hyperbola is Hess and Soom's (1990), not a Gaussian.
     SMOOTH  tau = L w/sqrt(w^2 + w_0^2)
@@ -22,35 +19,29 @@ class Friction(NamedTuple):
     BANK    Jenkins elements with limits in proportion to L
     """
 
-    kind: Array
-    coulomb: Array  # N m, C
-    drop: Array  # 1, s
-    drop_speed: Array  # rad/s, w_s
-    drop_exponent: Array  # 1, n
-    asymmetry: Array  # 1, a
-    smooth_speed: Array  # rad/s, w_0
-    stiffness: Array  # N m/rad, k
-    sharpness: Array  # 1, g
-
-
-def no_friction() -> Friction:
-    """None at any site."""
-    off, on = np.zeros(3), np.ones(3)
-    return Friction(off, off, off, on, on, off, on, on, on)
+    kind: float = NONE
+    coulomb: float = 0.0  # N m, C
+    drop: float = 0.0  # 1, s
+    drop_speed: float = 1.0  # rad/s, w_s
+    drop_exponent: float = 1.0  # 1, n
+    asymmetry: float = 0.0  # 1, a
+    smooth_speed: float = 1.0  # rad/s, w_0
+    stiffness: float = 1.0  # N m/rad, k
+    sharpness: float = 1.0  # 1, g
 
 
 @compiled
-def level(site, speed, f):
+def level(speed, f):
     """L(w)/C"""
-    share = abs(speed) / f.drop_speed[site]
-    drop = f.drop[site] / (1.0 + share ** f.drop_exponent[site])
-    return (1.0 + drop) * (1.0 + f.asymmetry[site] * speed / (abs(speed) + f.drop_speed[site]))
+    share = abs(speed) / f.drop_speed
+    drop = f.drop / (1.0 + share**f.drop_exponent)
+    return (1.0 + drop) * (1.0 + f.asymmetry * speed / (abs(speed) + f.drop_speed))
 
 
 @compiled
-def smooth_friction(site, speed, f):
+def smooth_friction(speed, f):
     """Torque of the law SMOOTH."""
-    return f.coulomb[site] * level(site, speed, f) * speed / math.sqrt(speed * speed + f.smooth_speed[site] ** 2)
+    return f.coulomb * level(speed, f) * speed / math.sqrt(speed * speed + f.smooth_speed**2)
 
 
 @compiled

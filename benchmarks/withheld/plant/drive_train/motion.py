@@ -35,7 +35,7 @@ from benchmarks.withheld.plant.drive_train.line import (
     WAVE,
     WAVE_SPEED,
 )
-from benchmarks.withheld.plant.drive_train.rates import Plant, bank_factor, rates
+from benchmarks.withheld.plant.drive_train.rates import Plant, Tables, bank_factor, rates
 
 NODES = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
 WEIGHTS = np.array(
@@ -81,22 +81,26 @@ class Motion(NamedTuple):
     steps: int
 
 
-def motion(plant: Plant, record: str, *, tolerance: float = TOLERANCE, samples: int = excitation.COUNT) -> Motion:
+def motion(plant: Plant, tables: Tables, record: str, *, tolerance: float = TOLERANCE, samples: int = excitation.COUNT) -> Motion:
     """The record from rest, all states zero."""
     reference, brake = excitation.inputs(record)
-    return follow(plant, reference[:samples], brake[:samples], 1.0 / excitation.RATE, tolerance=tolerance)
+    return follow(plant, tables, reference[:samples], brake[:samples], 1.0 / excitation.RATE, tolerance=tolerance)
 
 
-def follow(plant: Plant, reference: Array, brake: Array, sample: float, *, tolerance: float = TOLERANCE) -> Motion:
+def follow(plant: Plant, tables: Tables, reference: Array, brake: Array, sample: float, *, tolerance: float = TOLERANCE) -> Motion:
     """The answer to inputs that are linear between samples."""
-    states, reports, steps = _integrate(np.ascontiguousarray(reference), np.ascontiguousarray(brake), sample, plant, no_memory(), tolerance)
+    states, reports, steps = _integrate(
+        np.ascontiguousarray(reference), np.ascontiguousarray(brake), sample, plant, tables, no_memory(), tolerance
+    )
     if steps < 0:
-        raise ArithmeticError(f"The plant needs steps below {SHORTEST:g} s after {-steps / excitation.RATE:.4f} s; a size that was put in is absurd.")
+        raise ArithmeticError(
+            f"The plant needs steps below {SHORTEST:g} s after {-steps / excitation.RATE:.4f} s; a size that was put in is absurd."
+        )
     return Motion(states, reports[:, COMMAND].copy(), reports[:, OUTPUT_TORQUE].copy(), steps)
 
 
 @compiled
-def _integrate(reference, brake, sample, p, memory, tolerance):
+def _integrate(reference, brake, sample, p, tables, memory, tolerance):
     count = reference.size
     states = np.zeros((count, STATES))
     reports = np.zeros((count, REPORTS))
@@ -106,7 +110,7 @@ def _integrate(reference, brake, sample, p, memory, tolerance):
     report = np.zeros(REPORTS)
     after = np.zeros(REPORTS)
     scale = SCALE * tolerance
-    rates(0.0, y, reference[0], brake[0], p, memory, slopes[0], report)
+    rates(0.0, y, reference[0], brake[0], p, tables, memory, slopes[0], report)
     reports[0] = report
     step = 1e-5
     taken = 0
@@ -126,7 +130,15 @@ def _integrate(reference, brake, sample, p, memory, tolerance):
                     trial[i] = y[i] + h * total
                 at = done + NODES[stage] * h
                 rates(
-                    start + at, trial, reference[k - 1] + reference_slope * at, brake[k - 1] + brake_slope * at, p, memory, slopes[stage], after
+                    start + at,
+                    trial,
+                    reference[k - 1] + reference_slope * at,
+                    brake[k - 1] + brake_slope * at,
+                    p,
+                    tables,
+                    memory,
+                    slopes[stage],
+                    after,
                 )
             worst = 0.0
             for i in range(STATES):
@@ -139,7 +151,7 @@ def _integrate(reference, brake, sample, p, memory, tolerance):
                 if step < SHORTEST:
                     return states, reports, -k
                 continue
-            share = _reversal(report, after, p)
+            share = _reversal(report, after, tables.banks)
             if share < 0.98 and h > 1e-7:
                 step = max(h * share, 1e-8)
                 continue
@@ -147,8 +159,8 @@ def _integrate(reference, brake, sample, p, memory, tolerance):
             slopes[0] = slopes[6]
             report[:] = after
             for bank in range(BANKS):
-                if p.banks.active[bank] != 0.0:
-                    remember(bank, report[BANK_PLACE + bank], bank_factor(bank, y, report, p), p.banks, memory)
+                if tables.banks.active[bank] != 0.0:
+                    remember(bank, report[BANK_PLACE + bank], bank_factor(bank, y, p, tables), tables.banks, memory)
             taken += 1
             done = sample if last else done + h
             growth = min(5.0, 0.9 * max(worst, 1e-10) ** -0.2)
@@ -159,11 +171,11 @@ def _integrate(reference, brake, sample, p, memory, tolerance):
 
 
 @compiled
-def _reversal(before, after, p):
+def _reversal(before, after, banks):
     """Share of the step up to the first reversal of an active bank; 1 if none turns."""
     share = 1.0
     for bank in range(BANKS):
-        if p.banks.active[bank] != 0.0:
+        if banks.active[bank] != 0.0:
             first, second = before[BANK_RATE + bank], after[BANK_RATE + bank]
             if first * second < 0.0 and abs(first) > STILL[bank] and abs(second) > STILL[bank]:
                 share = min(share, first / (first - second))

@@ -17,7 +17,7 @@ from benchmarks.withheld.plant.drive_train.banks import (
     no_banks,
 )
 from benchmarks.withheld.plant.drive_train.contact import Play, shaft_torque
-from benchmarks.withheld.plant.drive_train.drags import Drags, drag, no_drags
+from benchmarks.withheld.plant.drive_train.drags import Drag, drag_torque
 from benchmarks.withheld.plant.drive_train.friction import (
     BANK,
     DAHL,
@@ -27,7 +27,6 @@ from benchmarks.withheld.plant.drive_train.friction import (
     dahl_rate,
     level,
     mesh_level,
-    no_friction,
     smooth_friction,
 )
 from benchmarks.withheld.plant.drive_train.gear_error import Orders, error, orders
@@ -72,84 +71,78 @@ class Hysteresis(NamedTuple):
 
 
 class Plant(NamedTuple):
-    """One specimen with all that was put in."""
+    """One specimen with all that was put in: numbers."""
 
     line: Line
     spring: GearSpring
+    hysteresis: Hysteresis = Hysteresis()
+    motor_friction: Friction = Friction()
+    wave_friction: Friction = Friction()
+    load_friction: Friction = Friction()
+    mesh: MeshFriction = MeshFriction()
+    motor_drag: Drag = Drag()
+    wave_drag: Drag = Drag()
+    load_drag: Drag = Drag()
+    motor: Motor = Motor()
+    input_play: Play = Play()
+    output_play: Play = Play()
+    shaft: OddShaft = OddShaft()
+    load: OddLoad = OddLoad()
+
+
+class Tables(NamedTuple):
+    """The rest of it: arrays, apart because they cost time at every call."""
+
     wave_error: Orders  # counts the wave generator's angle
     output_error: Orders  # counts the flexspline's angle
-    hysteresis: Hysteresis
-    friction: Friction
-    mesh: MeshFriction
     banks: Banks
-    drags: Drags
-    motor: Motor
-    input_play: Play
-    output_play: Play
-    shaft: OddShaft
-    load: OddLoad
 
 
-def nominal_plant(values: dict[str, float]) -> Plant:
+def nominal_plant(values: dict[str, float]) -> tuple[Plant, Tables]:
     """The bench of the data sheet with these parameters and nothing else."""
-    return Plant(
-        line(values), gear_spring(values), orders(), orders(), Hysteresis(), no_friction(), MeshFriction(), no_banks(), no_drags(),
-        Motor(), Play(), Play(), OddShaft(), OddLoad(),
-    )  # fmt: skip
+    return Plant(line(values), gear_spring(values)), Tables(orders(), orders(), no_banks())
 
 
 @compiled
-def bank_factor(bank, y, report, p):
-    """Limit factor of a bank in a state whose reports are at hand: Stribeck level, mesh level or 1."""
-    if bank == MOTOR_BANK:
-        return level(0, y[MOTOR_SPEED], p.friction)
-    if bank == WAVE_BANK:
-        return level(1, y[WAVE_SPEED], p.friction)
-    if bank == LOAD_BANK:
-        return level(2, y[LOAD_SPEED], p.friction)
-    if bank == MESH_BANK:
-        torque, _ = gear_torque(y, p)
-        return mesh_level(torque, y[WAVE_SPEED], p.line.ratio, p.mesh)
-    return 1.0
-
-
-@compiled
-def gear_twist(y, p):
+def gear_twist(y, ratio, tables):
     """(twist, its rate, de/da at the wave generator, de/da at the output)"""
-    value, slope = error(y[WAVE], p.wave_error)
-    more, bend = error(y[FLEX], p.output_error)
-    ratio = p.line.ratio
+    value, slope = error(y[WAVE], tables.wave_error)
+    more, bend = error(y[FLEX], tables.output_error)
     twist = y[WAVE] / ratio - y[FLEX] + value + more
     rate = y[WAVE_SPEED] * (1.0 / ratio + slope) - y[FLEX_SPEED] * (1.0 - bend)
     return twist, rate, slope, bend
 
 
 @compiled
-def gear_torque(y, p):
-    """(spring and damper torque without hysteresis, dV/d angle of the wave generator)"""
-    twist, rate, _, _ = gear_twist(y, p)
-    extra, on_wave = modulated(twist, y[WAVE], p.spring)
-    return spring_torque(twist, p.spring) + extra + p.line.flex_damping * rate, on_wave
+def bank_factor(bank, y, p, tables):
+    """Limit factor of a bank: Stribeck level, mesh level or 1."""
+    if bank == MOTOR_BANK:
+        return level(y[MOTOR_SPEED], p.motor_friction)
+    if bank == WAVE_BANK:
+        return level(y[WAVE_SPEED], p.wave_friction)
+    if bank == LOAD_BANK:
+        return level(y[LOAD_SPEED], p.load_friction)
+    if bank == MESH_BANK:
+        twist, rate, _, _ = gear_twist(y, p.line.ratio, tables)
+        torque = spring_torque(twist, p.spring) + modulated(twist, y[WAVE], p.spring)[0] + p.line.flex_damping * rate
+        return mesh_level(torque, y[WAVE_SPEED], p.line.ratio, p.mesh)
+    return 1.0
 
 
 @compiled
-def body_friction(site, bank, angle, speed, y, p, memory, dy):
-    """Dry friction of a body by whichever law it has; sets the rate of its bristle."""
-    kind = p.friction.kind[site]
-    if kind == SMOOTH:
-        return smooth_friction(site, speed, p.friction)
-    if kind == DAHL:
-        limit = p.friction.coulomb[site] * level(site, speed, p.friction)
-        force = y[BRISTLE + site]
-        dy[BRISTLE + site] = dahl_rate(force, speed, limit, p.friction.stiffness[site], p.friction.sharpness[site])
-        return force
-    if kind == BANK:
-        return bank_torque(bank, angle, level(site, speed, p.friction), p.banks, memory)
-    return 0.0
+def dry_friction(bank, angle, speed, bristle, f, banks, memory):
+    """(friction torque of a body by whichever law it has, rate of its bristle)"""
+    if f.kind == SMOOTH:
+        return smooth_friction(speed, f), 0.0
+    if f.kind == DAHL:
+        return bristle, dahl_rate(bristle, speed, f.coulomb * level(speed, f), f.stiffness, f.sharpness)
+    if f.kind == BANK:
+        return bank_torque(bank, angle, level(speed, f), banks, memory), 0.0
+    return 0.0, 0.0
 
 
 @compiled
-def rates(time, y, reference, brake, p, memory, dy, report):
+def rates(time, y, reference, brake, p, tables, memory, dy, report):
     """Rates of all states into dy; command, output torque, places and rates of the banks into report."""
     b = p.line
     dy[:] = 0.0
@@ -164,19 +157,20 @@ def rates(time, y, reference, brake, p, memory, dy, report):
 
     into = shaft_torque(y[MOTOR] - y[WAVE], y[MOTOR_SPEED] - y[WAVE_SPEED], b.input_stiffness, b.input_damping, p.input_play)
 
-    twist, rate, slope, bend = gear_twist(y, p)
-    gear, on_wave = gear_torque(y, p)
-    friction_torque = gear  # the mesh is loaded by what goes through spring and damper
+    twist, rate, slope, bend = gear_twist(y, b.ratio, tables)
+    extra, on_wave = modulated(twist, y[WAVE], p.spring)
+    through = spring_torque(twist, p.spring) + extra + b.flex_damping * rate
+    gear = through
     if p.hysteresis.torque > 0.0:
         gear += y[HYSTERESIS]
         dy[HYSTERESIS] = dahl_rate(y[HYSTERESIS], rate, p.hysteresis.torque, p.hysteresis.stiffness, p.hysteresis.sharpness)
-    gear += bank_torque(FLEX_BANK, twist, 1.0, p.banks, memory)
+    gear += bank_torque(FLEX_BANK, twist, 1.0, tables.banks, memory)
 
     mesh = 0.0
     if p.mesh.loss > 0.0:
-        most = mesh_level(friction_torque, y[WAVE_SPEED], b.ratio, p.mesh)
+        most = mesh_level(through, y[WAVE_SPEED], b.ratio, p.mesh)
         if p.mesh.kind == BANK:
-            mesh = bank_torque(MESH_BANK, y[WAVE], most, p.banks, memory)
+            mesh = bank_torque(MESH_BANK, y[WAVE], most, tables.banks, memory)
         else:
             mesh = most * y[WAVE_SPEED] / math.sqrt(y[WAVE_SPEED] ** 2 + p.mesh.smooth_speed**2)
 
@@ -192,8 +186,9 @@ def rates(time, y, reference, brake, p, memory, dy, report):
         dy[BRAKE] = (brake - y[BRAKE]) / p.load.brake_time
         brake = y[BRAKE]
     onto = out - b.load_viscous * y[LOAD_SPEED] - brake - weight(y[LOAD], p.load) + shaking(time, p.load)
-    onto -= drag(2, time, y[LOAD], y[LOAD_SPEED], p.drags)
-    onto -= body_friction(2, LOAD_BANK, y[LOAD], y[LOAD_SPEED], y, p, memory, dy)
+    onto -= drag_torque(time, y[LOAD], y[LOAD_SPEED], p.load_drag)
+    dry, dy[BRISTLE + 2] = dry_friction(LOAD_BANK, y[LOAD], y[LOAD_SPEED], y[BRISTLE + 2], p.load_friction, tables.banks, memory)
+    onto -= dry
     inertia = b.load_inertia
     if p.load.hidden_share > 0.0:
         behind = hidden_torque(y[LOAD] - y[HIDDEN], y[LOAD_SPEED] - y[HIDDEN_SPEED], p.load)
@@ -206,11 +201,14 @@ def rates(time, y, reference, brake, p, memory, dy, report):
         onto += inertia * p.load.inertia_depth * math.sin(inside) * y[LOAD_SPEED] ** 2  # -(dJ/da) w^2/2
         inertia *= 1.0 + p.load.inertia_depth * math.cos(inside)
 
-    onto_motor = motor - into - b.motor_viscous * y[MOTOR_SPEED] - drag(0, time, y[MOTOR], y[MOTOR_SPEED], p.drags)
-    onto_motor -= body_friction(0, MOTOR_BANK, y[MOTOR], y[MOTOR_SPEED], y, p, memory, dy)
+    onto_motor = motor - into - b.motor_viscous * y[MOTOR_SPEED] - drag_torque(time, y[MOTOR], y[MOTOR_SPEED], p.motor_drag)
+    dry, dy[BRISTLE] = dry_friction(MOTOR_BANK, y[MOTOR], y[MOTOR_SPEED], y[BRISTLE], p.motor_friction, tables.banks, memory)
+    onto_motor -= dry
+
     onto_wave = into - gear * (1.0 / b.ratio + slope) - on_wave - mesh - b.wave_viscous * y[WAVE_SPEED]
-    onto_wave -= drag(1, time, y[WAVE], y[WAVE_SPEED], p.drags)
-    onto_wave -= body_friction(1, WAVE_BANK, y[WAVE], y[WAVE_SPEED], y, p, memory, dy)
+    onto_wave -= drag_torque(time, y[WAVE], y[WAVE_SPEED], p.wave_drag)
+    dry, dy[BRISTLE + 1] = dry_friction(WAVE_BANK, y[WAVE], y[WAVE_SPEED], y[BRISTLE + 1], p.wave_friction, tables.banks, memory)
+    onto_wave -= dry
 
     dy[MOTOR], dy[MOTOR_SPEED] = y[MOTOR_SPEED], onto_motor / b.motor_inertia
     dy[WAVE], dy[WAVE_SPEED] = y[WAVE_SPEED], onto_wave / b.wave_inertia

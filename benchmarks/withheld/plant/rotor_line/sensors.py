@@ -61,5 +61,7 @@ def measured(run: Run, faults: SensorFaults, rng: np.random.Generator, *, memory
         columns.append(Column(name=name, unit=unit, values=rounded(value, resolution), single=name != "spin_angle"))
     if run.hammer.any():
         for axis, name in enumerate(("hammer_x", "hammer_y")):
-            columns.append(Column(name=name, unit=HAMMER[0], values=run.hammer[:, axis] + coloured(rng, HAMMER[1], memory, count), single=True))
+            columns.append(
+                Column(name=name, unit=HAMMER[0], values=run.hammer[:, axis] + coloured(rng, HAMMER[1], memory, count), single=True)
+            )
     return columns

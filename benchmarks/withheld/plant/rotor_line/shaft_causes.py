@@ -30,7 +30,9 @@ def unbalance(bench: Planted, place: str, strength: float, rng: np.random.Genera
     if law == 2:
         lever = sign(rng) * rng.uniform(0.03, 0.06)
         thin = bench.values[f"Jt_{r}"] - bench.values[f"Jp_{r}"]
-        moment = thin * cmath.rect(bench.values[f"tau_{r}"], bench.values[f"b_{r}"]) + lever * bench.values[f"m_{r}"] * cmath.rect(added, angle)
+        moment = thin * cmath.rect(bench.values[f"tau_{r}"], bench.values[f"b_{r}"]) + lever * bench.values[f"m_{r}"] * cmath.rect(
+            added, angle
+        )
         bench.values[f"tau_{r}"], bench.values[f"b_{r}"] = abs(moment) / abs(thin), cmath.phase(moment / thin)
         bench.effect.update(added_lever=lever)
 
@@ -60,11 +62,29 @@ def misalignment(bench: Planted, place: str, strength: float, rng: np.random.Gen
     row = bench.causes.misalignment
     if law == 2:
         k, part, offset, direction = 2.5e5, rng.uniform(0.15, 0.4), grown(strength, 5e-5, 2e-3), phase(rng)
-        row[:8] = 2, k, part, phase(rng), offset * math.cos(direction), offset * math.sin(direction), rng.uniform(0.1, 0.5) * offset, phase(rng)
+        row[:8] = (
+            2,
+            k,
+            part,
+            phase(rng),
+            offset * math.cos(direction),
+            offset * math.sin(direction),
+            rng.uniform(0.1, 0.5) * offset,
+            phase(rng),
+        )
         bench.effect.update(mis_offset=offset, mis_stiffness=k, mis_part=part)
     else:
         twice = grown(strength, 2.5, 120.0)
-        row[:8] = law, rng.uniform(0.1, 0.7) * twice, phase(rng), twice, phase(rng), rng.uniform(0.0, 0.25) * twice, phase(rng), rng.uniform(0.5, 1.0)
+        row[:8] = (
+            law,
+            rng.uniform(0.1, 0.7) * twice,
+            phase(rng),
+            twice,
+            phase(rng),
+            rng.uniform(0.0, 0.25) * twice,
+            phase(rng),
+            rng.uniform(0.5, 1.0),
+        )
         row[8:10] = (0.6, rng.uniform(0.0, 0.05)) if law == 3 else (0.0, 0.0)
         bench.effect.update(mis1=row[1], mis2=row[3], mis3=row[5])
     bench.effect.update(mis_law=law)

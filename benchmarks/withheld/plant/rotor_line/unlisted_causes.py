@@ -55,7 +55,16 @@ def floor_vibration(bench: Planted, place: str, strength: float, rng: np.random.
 def floor_shocks(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """Blows from outside that ring down, at regular times that have nothing to do with the rotation."""
     size = grown(strength, 10.0, 600.0)
-    row = 2, SUPPORT[place], size, rng.uniform(600.0, 2500.0), rng.uniform(40.0, 150.0), rng.uniform(0.23, 0.7), phase(rng), rng.uniform(0.05, 0.2)
+    row = (
+        2,
+        SUPPORT[place],
+        size,
+        rng.uniform(600.0, 2500.0),
+        rng.uniform(40.0, 150.0),
+        rng.uniform(0.23, 0.7),
+        phase(rng),
+        rng.uniform(0.05, 0.2),
+    )
     bench.causes.floor[:] = row
     bench.effect.update(shock=size, shock_every=row[5], loc=SUPPORT[place])
 
