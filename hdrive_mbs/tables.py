@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
@@ -30,3 +31,19 @@ def lines(x: Value, xs: Sequence[float], ys: Sequence[float]) -> Value:
     """Straight lines between the points; the first and the last one go on beyond the table."""
     first, last = (ys[1] - ys[0]) / (xs[1] - xs[0]), (ys[-1] - ys[-2]) / (xs[-1] - xs[-2])
     return np.interp(x, xs, ys) + first * np.minimum(x - xs[0], 0.0) + last * np.maximum(x - xs[-1], 0.0)
+
+
+EDGE = 1e-3
+"""Length of the edge between two held values, over the shortest time that one is held."""
+
+
+def held(x: Value, xs: Sequence[float], ys: Sequence[float]) -> Value:
+    """Each value from its own point to the next one; before the first point the first value.
+
+    A change is a steep line centred on its point, where the mean of both values stands: so a solver whose steps
+    meet the points adds up exactly what was held.
+    """
+    points, values = np.asarray(xs, float), np.asarray(ys, float)
+    half = 0.5 * EDGE * float(np.min(np.diff(points)))
+    corners: npt.NDArray[np.float64] = np.column_stack((points[1:] - half, points[1:] + half)).ravel()
+    return np.interp(x, corners, np.repeat(values, 2)[1:-1])

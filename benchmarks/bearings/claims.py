@@ -254,9 +254,8 @@ def _locked(found: Findings) -> Claim:
             f"{what} {f'from {value / FOUNDATION:.0f} times' if math.isfinite(value) else 'nowhere'}"
             for what, value in (("critical speeds within 1 %", speed), ("first peak of rotor 1 within 5 %", peak))
         ]
-        texts.append(
-            f"shaft of {1e3 * diameter:.1f} mm: {', '.join(parts)}, stiffest bearing leaves {100.0 * table[-1]:.2f} % on the critical speeds"
-        )
+        left = f"the stiffest bearing leaves {100.0 * table[-1]:.2f} % on the critical speeds"
+        texts.append(f"shaft of {1e3 * diameter:.1f} mm: {', '.join(parts)}, {left}")
         speeds.append(speed)
     return Claim(
         "sections 1, 5",

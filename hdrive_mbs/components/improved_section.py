@@ -166,7 +166,7 @@ class ImprovedSection(SupportedSection):
             coordinate, unit, doc = f"{name}.{key}", UNITS[key], f"{WORDS[key]} of {name}"
         else:
             coordinate, unit, doc = f"{name}.{kept}", "m", f"amplitude of fixed-interface {kept} of {name}"
-        # a symbolic coupling takes six coordinates of whole groups, so those of a nonlinear law are a group by themselves
+        # a coupled law is the faster the fewer coordinates its nodes have, so those of a law are a group by themselves
         group = f"{name}.law" if place == "ring" and self.looked_at else name
         return draft.add_coordinate(coordinate, inertia=0.0, unit=unit, doc=doc, group=group)
 

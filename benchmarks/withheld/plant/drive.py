@@ -87,7 +87,7 @@ def _put_in(values: Mapping[str, float], causes: Sequence[Site], seeds: Mapping[
         if site in parameters.SYMBOLS:
             made = made.told(*site, "parameter_factors", wrong)
         else:
-            made = _PUT[site[0]](streams[site], site[1], made)
+            made = _PUT[site[0]](streams[site], site[1], made, 1.0)
     return with_finer_detail(np.random.default_rng(detail), made)[0]
 
 

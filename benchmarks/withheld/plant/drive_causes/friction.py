@@ -21,9 +21,9 @@ def _body(
 ) -> Put:
     """Friction of one body; ranges of the sliding torque, of the speed of the Stribeck drop and of the presliding angle."""
 
-    def put(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
+    def put(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
         law = (laws.SMOOTH, laws.DAHL, laws.BANK)[rng.integers(3)]
-        coulomb, yield_angle = log_uniform(rng, *torque), log_uniform(rng, *presliding)
+        coulomb, yield_angle = strength * log_uniform(rng, *torque), log_uniform(rng, *presliding)
         sizes = {
             "coulomb": coulomb,
             "drop": rng.uniform(0.0, 0.8),
@@ -44,10 +44,10 @@ def _body(
     return put
 
 
-def _mesh(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
+def _mesh(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     law = (laws.SMOOTH, laws.BANK)[rng.integers(2)]
     sizes = {
-        "loss": log_uniform(rng, 0.006, 0.3),
+        "loss": strength * log_uniform(rng, 0.01, 0.3),
         "round_torque": rng.uniform(0.5, 4.0),
         "rise": rng.uniform(0.0, 0.4),
         "rise_speed": log_uniform(rng, 5.0, 50.0),

@@ -14,11 +14,11 @@ from benchmarks.withheld.plant.drive_train.gear_error import orders, with_side_b
 from benchmarks.withheld.plant.drive_train.specimen import Specimen
 
 
-def _kinematic_error(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
+def _kinematic_error(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     """A main order with side harmonics; of the wave generator (with side bands once per turn of the output) or, rarer, of the output."""
     of_output = rng.random() < 0.25
     order = float(rng.choice([1, 2, 3]) if of_output else rng.choice([1, 2, 2, 2, 4, 6]))
-    amplitude = log_uniform(rng, *((4e-6, 5e-4) if of_output else (1.5e-6, 2e-4) if order <= 2 else (1e-6, 5e-5)))
+    amplitude = strength * log_uniform(rng, *((4e-6, 5e-4) if of_output else (1.5e-6, 2e-4) if order <= 2 else (1e-6, 5e-5)))
     start, depth = phase(rng), rng.uniform(0.0, 0.25)
     if of_output:
         terms = [(amplitude, order, start)]
@@ -36,9 +36,9 @@ def _kinematic_error(rng: np.random.Generator, at: str, specimen: Specimen) -> S
     return changed.told("kinematic_error", at, symbols=symbols, amplitude=amplitude, order=order, follows=symbols["error_follows"])
 
 
-def _hysteresis(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
+def _hysteresis(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     """Iwan sliders with spread yields, or Dahl's rate law with an exponent above 1."""
-    torque, twist = log_uniform(rng, 0.15, 10.0), log_uniform(rng, 1e-4, 8e-4)
+    torque, twist = strength * log_uniform(rng, 0.3, 10.0), log_uniform(rng, 1e-4, 8e-4)
     if rng.random() < 0.5:
         spread = rng.uniform(2.0, 8.0)
         banks = with_bank(specimen.tables.banks, FLEX_BANK, torque, twist, spread)
@@ -52,18 +52,18 @@ def _hysteresis(rng: np.random.Generator, at: str, specimen: Specimen) -> Specim
     return changed.told("hysteresis_flexspline", at, symbols=symbols, torque=torque)
 
 
-def _lost_motion(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
+def _lost_motion(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     """A wider gap with rounded edges, or one that closes like a soft layer."""
-    extra = log_uniform(rng, 0.2, 4.0) * specimen.values["lost_motion"]  # the width is known to 5 %
+    extra = strength * log_uniform(rng, 0.2, 4.0) * specimen.values["lost_motion"]  # the width is known to 5 %
     sizes = {"half_gap": 0.5 * (specimen.values["lost_motion"] + extra)}
     sizes |= {"edge": rng.uniform(0.05, 0.2) * extra} if rng.random() < 0.5 else {"entry": rng.uniform(0.05, 0.2) * extra}
     symbols = {"spring_" + name: value for name, value in sizes.items()}
     return specimen.part("spring", **sizes).told("lost_motion", at, symbols=symbols, extra=extra)
 
 
-def _asymmetry(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
+def _asymmetry(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     """The reverse sense is stiffer or softer, from small twists on."""
-    size = log_uniform(rng, 0.008, 0.4) * rng.choice([-1.0, 1.0])
+    size = strength * log_uniform(rng, 0.02, 0.4) * rng.choice([-1.0, 1.0])
     sizes = {"asymmetry": float(size), "asymmetry_twist": log_uniform(rng, 5e-5, 4e-4)}
     symbols = {"spring_" + name: value for name, value in sizes.items()}
     return specimen.part("spring", **sizes).told("stiffness_asymmetry", at, symbols=symbols, relative=float(size))

@@ -10,21 +10,21 @@ from benchmarks.withheld.plant.drive_causes import Entry
 from benchmarks.withheld.plant.drive_train.specimen import Specimen
 
 
-def _quadratic_drag(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
+def _quadratic_drag(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     """A power of speed near 2, from laminar-turbulent to fully rough; the torque is that at the top speed of the records."""
     part, top, torque = {
         "motor": ("motor_drag", 314.0, (0.02, 1.0)),
         "wave_generator": ("wave_drag", 314.0, (0.02, 1.0)),
         "load": ("load_drag", 3.14, (0.4, 25.0)),
     }[at]
-    sizes = {"power": log_uniform(rng, *torque), "power_speed": top, "exponent": rng.uniform(1.75, 2.25)}
+    sizes = {"power": strength * log_uniform(rng, *torque), "power_speed": top, "exponent": rng.uniform(1.75, 2.25)}
     symbols = {f"{part}_{name}": value for name, value in sizes.items()}
     return specimen.part(part, **sizes).told("quadratic_drag", at, symbols=symbols, coefficient=sizes["power"] / top**2)
 
 
-def _torque_ripple(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
+def _torque_ripple(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     """A main order with its double and a share that grows with the torque, or cogging; each with the other in small."""
-    amplitude = log_uniform(rng, 0.002, 0.12)
+    amplitude = strength * log_uniform(rng, 0.005, 0.12)
     ripple = bool(rng.random() < 0.6)
     order, other = float(rng.choice([6, 12, 18])), float(rng.choice([24, 30, 36]))
     sizes = {
@@ -43,30 +43,30 @@ def _torque_ripple(rng: np.random.Generator, at: str, specimen: Specimen) -> Spe
     return specimen.part("motor", **sizes).told("torque_ripple", at, symbols=symbols, amplitude=amplitude, order=told)
 
 
-def _actuator_lag(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
+def _actuator_lag(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     """Second order; its delay at low frequency is 2 z/w_n."""
-    delay, damping = log_uniform(rng, 4e-5, 6e-3), rng.uniform(0.7, 1.2)
+    delay, damping = strength * log_uniform(rng, 2e-4, 6e-3), rng.uniform(0.7, 1.2)
     sizes = {"lag_frequency": 2.0 * damping / delay, "lag_damping": damping}
     symbols = {f"motor_{name}": value for name, value in sizes.items()}
     return specimen.part("motor", **sizes).told("actuator_lag", at, symbols=symbols, delay=delay)
 
 
-def _gravity_load(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
+def _gravity_load(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     """Weight with a second harmonic, as of a linkage or a counter spring."""
-    torque = log_uniform(rng, 0.15, 12.0)
+    torque = strength * log_uniform(rng, 0.3, 12.0)
     sizes = {"weight": torque, "weight_phase": phase(rng), "weight_second": rng.uniform(0.0, 0.15), "weight_second_phase": phase(rng)}
     symbols = {f"load_{name}": value for name, value in sizes.items()}
     return specimen.part("load", **sizes).told("gravity_load", at, symbols=symbols, torque=torque)
 
 
-def _coupling_backlash(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
+def _coupling_backlash(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     """Play with soft edges and a film."""
     line = specimen.plant.line
     part, width, damping = {
-        "input_shaft": ("input_play", (2e-4, 0.03), line.input_damping),
-        "output_shaft": ("output_play", (4e-6, 1e-3), line.output_damping),
+        "input_shaft": ("input_play", (1e-3, 0.03), line.input_damping),
+        "output_shaft": ("output_play", (3e-5, 1e-3), line.output_damping),
     }[at]
-    gap = log_uniform(rng, *width)
+    gap = strength * log_uniform(rng, *width)
     sizes = {
         "half_gap": 0.5 * gap,
         "edge": rng.uniform(0.03, 0.1) * gap,
@@ -77,9 +77,9 @@ def _coupling_backlash(rng: np.random.Generator, at: str, specimen: Specimen) ->
     return specimen.part(part, **sizes).told("coupling_backlash", at, symbols=symbols, backlash=gap)
 
 
-def _hidden_mode(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
+def _hidden_mode(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     """Part of the load's inertia behind a hardening spring with damping that grows with the rate."""
-    share, frequency, damping = log_uniform(rng, 0.004, 0.25), 2.0 * np.pi * log_uniform(rng, 7.0, 50.0), rng.uniform(0.01, 0.06)
+    share, frequency, damping = strength * log_uniform(rng, 0.01, 0.25), 2.0 * np.pi * log_uniform(rng, 7.0, 50.0), rng.uniform(0.01, 0.06)
     inertia = share * specimen.values["J_l"]
     stiffness = inertia * frequency**2
     sizes = {

@@ -13,8 +13,8 @@ from benchmarks.withheld.plant.drive_train.sensors import Eccentricity
 from benchmarks.withheld.plant.drive_train.specimen import Specimen
 
 
-def _eccentricity(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
-    amplitude = log_uniform(rng, *{"motor_encoder": (6e-6, 3e-3), "load_encoder": (2e-6, 2e-4)}[at])
+def _eccentricity(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
+    amplitude = strength * log_uniform(rng, *{"motor_encoder": (1e-4, 5e-3), "load_encoder": (5e-6, 2e-4)}[at])
     fault = Eccentricity(amplitude=amplitude, phase=phase(rng), second=rng.uniform(0.0, 0.15), second_phase=phase(rng))
     symbols = {
         f"{at}_amplitude": amplitude,
@@ -26,14 +26,14 @@ def _eccentricity(rng: np.random.Generator, at: str, specimen: Specimen) -> Spec
     return changed.told("encoder_eccentricity", at, "sensor", symbols, amplitude=amplitude)
 
 
-def _delay(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
-    delay = log_uniform(rng, 1e-6, 5e-3)
+def _delay(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
+    delay = strength * log_uniform(rng, 1e-4, 5e-3)
     changed = replace(specimen, sensors=replace(specimen.sensors, load_encoder_delay=delay))
     return changed.told("load_encoder_delay", at, "sensor", {"load_encoder_delay": delay}, delay=delay)
 
 
-def _gain(rng: np.random.Generator, at: str, specimen: Specimen) -> Specimen:
-    gain, cubic = either(rng, 1.004, 1.15), rng.uniform(-1e-7, 1e-7)
+def _gain(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
+    gain, cubic = either(rng, 1.015, 1.15) ** strength, rng.uniform(-1e-7, 1e-7)
     changed = replace(specimen, sensors=replace(specimen.sensors, torque_gain=gain, torque_cubic=cubic))
     return changed.told("torque_sensor_gain", at, "sensor", {"torque_gain": gain, "torque_cubic": cubic}, gain=gain)
 

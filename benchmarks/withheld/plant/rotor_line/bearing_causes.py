@@ -16,7 +16,7 @@ BEARING = {"bearing_1": 0, "bearing_2": 1}
 def bearing_clearance(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """Radial play: 1 linear contact, 2 line contact p^(10/9), its stiffness at 800 N equal to the bearing's; a thin film in the gap."""
     law, b = one_of(rng, 1, 2), BEARING[place]
-    made, gap = bench.machine(), grown(strength, 4e-7, 2.5e-5)
+    made, gap = bench.machine(), grown(strength, 5e-8 if law == 1 else 1e-6, 2e-5)
     k, d = made.ring_stiffness[b], made.ring_damping[b]
     row = bench.causes.bearing[b]
     row[:4] = law, gap, rng.uniform(0.0, 0.03), rng.uniform(0.1, 1.0)
@@ -29,7 +29,7 @@ def bearing_clearance(bench: Planted, place: str, strength: float, rng: np.rando
 def bearing_cubic_stiffness(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """Hardening: 3 along the displacement, 4 by axis, 5 as sinh; the length is that at which the stiffness has grown by its own size."""
     law, b = one_of(rng, 3, 4, 5), BEARING[place]
-    length = grown(strength, 5e-4, 2e-5)
+    length = grown(strength, 1e-4, 6e-6)
     bench.causes.bearing[b, :2] = law, length / (math.sqrt(6.0) if law == 5 else 1.0)
     bench.effect.update(hardening_length=length, loc=b, bearing_law=law)
 
@@ -37,7 +37,7 @@ def bearing_cubic_stiffness(bench: Planted, place: str, strength: float, rng: np
 def bearing_cross_coupling(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """A skew stiffness that drives forward whirl; the laws are in laws.cross_force."""
     law, b = one_of(rng, 1, 2, 3), BEARING[place]
-    size = grown(strength, 5e4, 3e6)
+    size = grown(strength, 7e5, 3e7)
     bench.causes.cross[b] = law, size, rng.uniform(-0.3, 0.3), rng.uniform(5e-5, 3e-4)
     bench.effect.update(cross=size, cross_law=law, loc=b)
 
@@ -45,7 +45,7 @@ def bearing_cross_coupling(bench: Planted, place: str, strength: float, rng: np.
 def oil_whirl(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """Whirl at 0.42 to 0.49 of the speed: 1 a force that sets in at a speed and wavers, 2 a limit cycle that the ring can pull along."""
     law, b = one_of(rng, 1, 2), BEARING[place]
-    force, part = grown(strength, 1.2, 60.0), rng.uniform(0.42, 0.49)
+    force, part = grown(strength, 1.5, 400.0), rng.uniform(0.42, 0.49)
     onset = rng.uniform(300.0, 600.0)
     row = bench.causes.whirl
     row[:8] = law, b, force, part, rng.uniform(-0.02, 0.02), onset, rng.uniform(0.0, 0.0015), phase(rng)
@@ -59,7 +59,7 @@ def ball_pass(bench: Planted, place: str, strength: float, rng: np.random.Genera
     law, b = one_of(rng, 1, 2, 3), BEARING[place]
     balls, ratio = int(rng.choice([7, 8, 9])), rng.uniform(0.2, 0.3)
     orders = 0.5 * balls * (1.0 + ratio if law == 2 else 1.0 - ratio)
-    size = grown(strength, 1.5, 60.0)
+    size = grown(strength, 0.3, 60.0)
     row = bench.causes.passing
     row[:5] = law, orders, rng.uniform(0.0005, 0.004), size, rng.uniform(0.0, 1.5)
     row[5:10] = rng.uniform(0.1, 0.4) if law == 3 else rng.uniform(1.0, 5.0), -0.5 * math.pi + rng.uniform(-0.6, 0.6), 0.1, b, phase(rng)

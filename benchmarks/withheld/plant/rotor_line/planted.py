@@ -55,9 +55,9 @@ class Planted:
         return static_deflection(self.machine(), no_causes())
 
     def travel(self, station: int) -> float:
-        """Largest distance of a station from its rest in the run-up without any hidden cause [m]."""
+        """Largest distance of a station from its rest after the hammer's blows without any hidden cause [m]."""
         rest = self.rest()
-        found = run(self.machine(), no_causes(), "run_up", rest=rest)
+        found = run(self.machine(), no_causes(), "bump", rest=rest)
         k = 4 * station
         return float(np.max(np.hypot(found.states[:, k] - rest[k], found.states[:, k + 1] - rest[k + 1])))
 

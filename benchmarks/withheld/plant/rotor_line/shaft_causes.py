@@ -18,7 +18,7 @@ def unbalance(bench: Planted, place: str, strength: float, rng: np.random.Genera
     """A mass added to a rotor, in its plane (law 1) or beside it (law 2), on top of the known unbalance."""
     r = place.replace("rotor_", "r")
     law = one_of(rng, 1, 1, 2)
-    added = grown(strength, 4e-7, 1.2e-5) if r == "r1" else grown(strength, 6e-7, 2.5e-5)
+    added = grown(strength, 6e-8, 1e-5) if r == "r1" else grown(strength, 1.2e-7, 2e-5)
     angle = phase(rng)
     before = cmath.rect(bench.values[f"e_{r}"], bench.values[f"a_{r}"])
     after = before + cmath.rect(added, angle)
@@ -30,16 +30,15 @@ def unbalance(bench: Planted, place: str, strength: float, rng: np.random.Genera
     if law == 2:
         lever = sign(rng) * rng.uniform(0.03, 0.06)
         thin = bench.values[f"Jt_{r}"] - bench.values[f"Jp_{r}"]
-        moment = thin * cmath.rect(bench.values[f"tau_{r}"], bench.values[f"b_{r}"]) + lever * bench.values[f"m_{r}"] * cmath.rect(
-            added, angle
-        )
+        moment = thin * cmath.rect(bench.values[f"tau_{r}"], bench.values[f"b_{r}"])
+        moment += lever * bench.values[f"m_{r}"] * cmath.rect(added, angle)
         bench.values[f"tau_{r}"], bench.values[f"b_{r}"] = abs(moment) / abs(thin), cmath.phase(moment / thin)
         bench.effect.update(added_lever=lever)
 
 
 def bow(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """A bent shaft: 1 a half sine between the bearings with its tangent beyond, 2 a kink at rotor 1, 3 a kink at bearing 2."""
-    law, size, angle = one_of(rng, 1, 1, 2, 3), grown(strength, 5e-7, 2.5e-5), phase(rng)
+    law, size, angle = one_of(rng, 1, 1, 2, 3), grown(strength, 5e-8, 1e-5), phase(rng)
     p = bench.values
     z = np.array([p["z_b1"], p["z_r1"], p["z_b2"], p["z_r2"]])
     span = z[2] - z[0]
@@ -61,30 +60,14 @@ def misalignment(bench: Planted, place: str, strength: float, rng: np.random.Gen
     law = one_of(rng, 1, 1, 2, 3)
     row = bench.causes.misalignment
     if law == 2:
-        k, part, offset, direction = 2.5e5, rng.uniform(0.15, 0.4), grown(strength, 5e-5, 2e-3), phase(rng)
-        row[:8] = (
-            2,
-            k,
-            part,
-            phase(rng),
-            offset * math.cos(direction),
-            offset * math.sin(direction),
-            rng.uniform(0.1, 0.5) * offset,
-            phase(rng),
-        )
+        k, part, offset, direction = 2.5e5, rng.uniform(0.15, 0.4), grown(strength, 1.5e-6, 8e-4), phase(rng)
+        row[:4] = 2, k, part, phase(rng)
+        row[4:8] = offset * math.cos(direction), offset * math.sin(direction), rng.uniform(0.1, 0.5) * offset, phase(rng)
         bench.effect.update(mis_offset=offset, mis_stiffness=k, mis_part=part)
     else:
-        twice = grown(strength, 2.5, 120.0)
-        row[:8] = (
-            law,
-            rng.uniform(0.1, 0.7) * twice,
-            phase(rng),
-            twice,
-            phase(rng),
-            rng.uniform(0.0, 0.25) * twice,
-            phase(rng),
-            rng.uniform(0.5, 1.0),
-        )
+        twice = grown(strength, 0.1, 60.0)
+        row[:5] = law, rng.uniform(0.1, 0.7) * twice, phase(rng), twice, phase(rng)
+        row[5:8] = rng.uniform(0.0, 0.25) * twice, phase(rng), rng.uniform(0.5, 1.0)
         row[8:10] = (0.6, rng.uniform(0.0, 0.05)) if law == 3 else (0.0, 0.0)
         bench.effect.update(mis1=row[1], mis2=row[3], mis3=row[5])
     bench.effect.update(mis_law=law)
@@ -94,7 +77,7 @@ def crack(bench: Planted, place: str, strength: float, rng: np.random.Generator)
     """A transverse crack beside rotor 1 that breathes; the laws are in laws.openness."""
     law, section = one_of(rng, 1, 2, 3), one_of(rng, 0, 1)
     where = rng.uniform(0.6, 0.95) if section == 0 else rng.uniform(0.05, 0.4)
-    compliance = grown(strength, 1.5e-8, 1e-6)
+    compliance = grown(strength, 2.5e-9, 1e-6)
     scale = {1: rng.uniform(10.0, 40.0), 2: rng.uniform(0.7, 4.0), 3: rng.uniform(5.0, 25.0)}[law]
     bench.causes.crack[:] = law, section, where, compliance, rng.uniform(0.1, 0.4) * compliance, phase(rng), scale
     bench.effect.update(crack=compliance, crack_law=law, section=section, crack_place=where, crack_scale=scale)
@@ -104,9 +87,9 @@ def rub(bench: Planted, place: str, strength: float, rng: np.random.Generator) -
     """A stator around a rotor with little room; the laws are in laws.rub_force."""
     law, station = one_of(rng, 1, 2, 3), STATION[place]
     travel, rest = bench.travel(station), bench.rest()
-    gap = travel * (1.0 - grown(strength, 0.02, 0.45))
-    shift, way = rng.uniform(0.0, 0.1) * gap, phase(rng)
-    k = grown(strength, 1e6, 1.2e7)
+    gap = travel * (1.0 - grown(strength, 0.015, 0.65))
+    shift, way = rng.uniform(0.0, 0.08) * (travel - gap), phase(rng)
+    k = grown(strength, 2e5, 1e7)
     row = bench.causes.rub
     row[:4] = law, gap, rest[4 * station] + shift * math.cos(way), rest[4 * station + 1] + shift * math.sin(way)
     row[4:10] = k, rng.uniform(50.0, 500.0), rng.uniform(0.05, 0.2), 0.05, rng.uniform(0.04, 0.09), 0.0
@@ -121,7 +104,7 @@ def rub(bench: Planted, place: str, strength: float, rng: np.random.Generator) -
 def internal_damping(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """Material damping that turns with the shaft: 1 viscous, 2 a relaxing stiffness (standard linear solid)."""
     law = one_of(rng, 1, 1, 2)
-    viscous = grown(strength, 4e-7, 1.6e-5)
+    viscous = grown(strength, 2e-7, 1.6e-5)
     if law == 1:
         bench.causes.internal[:] = 1, viscous, 0.0
         bench.effect.update(internal_damping=viscous)
@@ -136,7 +119,7 @@ def torque_ripple(bench: Planted, place: str, strength: float, rng: np.random.Ge
     """Motor torque beside the command, in orders of the drive end's angle: 1 of constant size, 2 that grows with the torque."""
     law = one_of(rng, 1, 1, 2)
     orders = [(1, 2, 4), (2, 4, 8), (3, 6, 12), (6, 12, 1)][int(rng.integers(4))]
-    size = grown(strength, 0.15, 6.0) * (orders[0] ** 0.7)
+    size = grown(strength, 0.004, 1.5) * (orders[0] ** 0.7)
     row = bench.causes.ripple
     row[0], row[1] = law, 0.4
     for n, order in enumerate(orders):

@@ -17,7 +17,7 @@ def looseness(bench: Planted, place: str, strength: float, rng: np.random.Genera
     """A loose foot: 1 softer when it lifts, 2 softer within a sideways gap, 3 softer between the foot and the bolt's head."""
     law, b = one_of(rng, 1, 2, 3), SUPPORT[place]
     rest = float(bench.rest()[HOUSING + 2 * b + 1])
-    part = 1.0 - grown(strength, 0.06, 0.7)
+    part = 1.0 - grown(strength, 0.006, 0.7)
     row = bench.causes.support[b]
     if law == 2:
         row[:] = 2, 0.0, rng.uniform(5e-7, 3e-6), part
@@ -30,7 +30,7 @@ def looseness(bench: Planted, place: str, strength: float, rng: np.random.Genera
 def hidden_mode_support(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """Something that swings on the housing (a pipe, a guard): one mass on two springs along turned axes."""
     b = SUPPORT[place]
-    mass, first = grown(strength, 0.04, 2.5), rng.uniform(160.0, 900.0)
+    mass, first = grown(strength, 0.04, 6.0), rng.uniform(160.0, 900.0)
     second = first * rng.uniform(0.7, 1.6)
     damping = 2 * rng.uniform(0.005, 0.04) * mass * first
     angle = rng.uniform(0.0, 0.5 * math.pi)

@@ -15,14 +15,14 @@ from benchmarks.withheld.plant.rotor_line.support_causes import SUPPORT
 
 def support_dry_friction(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """A friction joint beside the support (Dahl) whose force depends on where the housing stands."""
-    force = grown(strength, 3.0, 120.0)
+    force = grown(strength, 0.15, 120.0)
     bench.causes.friction[SUPPORT[place]] = rng.uniform(3e6, 2e7), force, rng.uniform(2e-6, 1e-5)
     bench.effect.update(friction=force, loc=SUPPORT[place])
 
 
 def support_stiffness_drift(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """A support that softens or stiffens while it warms up, anew in each record."""
-    share = sign(rng) * grown(strength, 0.015, 0.3)
+    share = sign(rng) * grown(strength, 0.01, 0.3)
     bench.causes.drift[SUPPORT[place]] = share, rng.uniform(0.5, 2.5)
     bench.effect.update(drift=share, drift_time=bench.causes.drift[SUPPORT[place], 1], loc=SUPPORT[place])
 
@@ -46,7 +46,7 @@ def magnetic_pull(bench: Planted, place: str, strength: float, rng: np.random.Ge
 
 def floor_vibration(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """A neighbour's machine shakes a support at two fixed frequencies."""
-    size, first = grown(strength, 0.8, 60.0), rng.uniform(120.0, 800.0)
+    size, first = grown(strength, 0.8, 150.0), rng.uniform(120.0, 800.0)
     second = first * rng.uniform(1.3, 2.2)
     bench.causes.floor[:] = 1, SUPPORT[place], size, first, rng.uniform(0.2, 0.7) * size, second, phase(rng), phase(rng)
     bench.effect.update(floor=size, floor_1=first, floor_2=second, loc=SUPPORT[place])
@@ -54,39 +54,30 @@ def floor_vibration(bench: Planted, place: str, strength: float, rng: np.random.
 
 def floor_shocks(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """Blows from outside that ring down, at regular times that have nothing to do with the rotation."""
-    size = grown(strength, 10.0, 600.0)
-    row = (
-        2,
-        SUPPORT[place],
-        size,
-        rng.uniform(600.0, 2500.0),
-        rng.uniform(40.0, 150.0),
-        rng.uniform(0.23, 0.7),
-        phase(rng),
-        rng.uniform(0.05, 0.2),
-    )
-    bench.causes.floor[:] = row
-    bench.effect.update(shock=size, shock_every=row[5], loc=SUPPORT[place])
+    size, every = grown(strength, 1.0, 300.0), rng.uniform(0.23, 0.7)
+    ringing, decay = rng.uniform(600.0, 2500.0), rng.uniform(40.0, 150.0)
+    bench.causes.floor[:] = 2, SUPPORT[place], size, ringing, decay, every, phase(rng), rng.uniform(0.05, 0.2)
+    bench.effect.update(shock=size, shock_every=every, loc=SUPPORT[place])
 
 
 def loose_ball(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """A ball left in a ring groove of a rotor: dragged along, it finds its own place, so that the unbalance wanders."""
     station, radius = STATION[place], rng.uniform(0.06, 0.12)
-    moment = grown(strength, 6e-6, 2e-4)
+    moment = grown(strength, 4e-7, 1e-4)
     bench.causes.ball[:] = 1, station, moment / radius, radius, rng.uniform(2.0, 12.0), 1.0
     bench.effect.update(ball_moment=moment, ball_radius=radius, ball_drag=bench.causes.ball[4])
 
 
 def windage(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """A fan on the drive end: torque with the square of the speed."""
-    size = grown(strength, 3e-8, 5e-6)
+    size = grown(strength, 1e-9, 1e-6)
     bench.causes.windage[0] = size
     bench.effect.update(windage=size)
 
 
 def seal_drag(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """A lip seal at the drive end: dry friction on the spin."""
-    size = grown(strength, 0.02, 2.5)
+    size = grown(strength, 5e-4, 0.5)
     bench.causes.seal[0] = size
     bench.effect.update(seal_drag=size)
 
@@ -95,6 +86,6 @@ def unsymmetric_shaft(bench: Planted, place: str, strength: float, rng: np.rando
     """A keyway beside rotor 1: one direction of the section bends more easily, open at all times."""
     section = one_of(rng, 0, 1)
     where = rng.uniform(0.6, 0.95) if section == 0 else rng.uniform(0.05, 0.4)
-    compliance = grown(strength, 1e-8, 5e-7)
+    compliance = grown(strength, 2e-9, 5e-7)
     bench.causes.crack[:] = 0, section, where, compliance, 0.0, phase(rng), 1.0
     bench.effect.update(keyway=compliance, section=section, key_place=where)

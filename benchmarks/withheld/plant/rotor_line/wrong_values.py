@@ -29,8 +29,8 @@ def bearing_stiffness(bench: Planted, place: str, strength: float, rng: np.rando
 
 
 def bearing_damping(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
-    """One bearing, or both, with 1.6 to 4 times the damping or as much less."""
-    factor = _factor(strength, rng, math.log(1.6), math.log(4.0))
+    """One bearing, or both, with 2 to 8 times the damping; less of it would hardly be seen."""
+    factor = grown(strength, 2.0, 8.0)
     if place == "bearings":
         bench.multiply("d_b", factor)
         return
@@ -68,7 +68,7 @@ def probe_runout(bench: Planted, place: str, strength: float, rng: np.random.Gen
 
 def probe_gain(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """A probe that shows too much or too little, at times bent: error + curve * displacement."""
-    error = sign(rng) * grown(strength, 0.004, 0.12)
+    error = sign(rng) * grown(strength, 0.0015, 0.12)
     curve = rng.uniform(-0.1, 0.1) * error / 1e-4 if rng.random() < 0.5 else 0.0
     bench.sensors.gain[place.removeprefix("probe_")] = error, curve
     bench.sensor.update(gain=error, gain_curve=curve)
