@@ -38,7 +38,7 @@ def arcmin(value: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Quantity:
-    """Unit, meaning and allowed range of one field."""
+    """Unit, meaning and allowed range of one field; ``typical`` is where a search for its value begins."""
 
     unit: str
     doc: str
@@ -46,6 +46,16 @@ class Quantity:
     high: float | None = None
     above: float | None = None
     sequence: bool = False
+    typical: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        if self.typical is None:
+            return
+        first, last = self.typical
+        for end in (first, last):
+            self.check(f"The typical range ({first:g}, {last:g}): {end:g}", end)
+        if not first < last:
+            raise ParameterError(f"The typical range ({first:g}, {last:g}) of {self.doc!r} must rise.")
 
     def check(self, where: str, value: float) -> None:
         """Raise ParameterError when the value is not finite or out of range."""
@@ -70,9 +80,10 @@ def parameter(
     low: float | None = None,
     high: float | None = None,
     above: float | None = None,
+    typical: tuple[float, float] | None = None,
 ) -> Any:
-    """A number with a unit.  ``low``/``high`` are allowed values, ``above`` is not."""
-    quantity = Quantity(unit=unit, doc=doc, low=low, high=high, above=above)
+    """A number with a unit.  ``low``/``high`` are allowed values, ``above`` is not; a search varies fields with a ``typical`` range."""
+    quantity = Quantity(unit=unit, doc=doc, low=low, high=high, above=above, typical=typical)
     return dataclasses.field(default=default, metadata={"quantity": quantity})
 
 
@@ -84,9 +95,10 @@ def table(
     low: float | None = None,
     high: float | None = None,
     above: float | None = None,
+    typical: tuple[float, float] | None = None,
 ) -> Any:
     """A sequence of numbers with a unit, kept as a tuple so that parts compare by value."""
-    quantity = Quantity(unit=unit, doc=doc, low=low, high=high, above=above, sequence=True)
+    quantity = Quantity(unit=unit, doc=doc, low=low, high=high, above=above, sequence=True, typical=typical)
     return dataclasses.field(default=default, metadata={"quantity": quantity})
 
 
@@ -239,6 +251,8 @@ def _field_line(name: str, field: dataclasses.Field[Any]) -> str:
     if quantity is not None:
         bounds = (("above", quantity.above), ("at least", quantity.low), ("at most", quantity.high))
         words += [f"{word} {value:g}" for word, value in bounds if value is not None]
+        if quantity.typical is not None:
+            words.append("typically {:g} to {:g}".format(*quantity.typical))
     if field.default is not dataclasses.MISSING and field.default is not None:
         words.append(f"default {_readable(field.default, None)}")
     unit = "" if quantity is None else f" [{quantity.unit}]"

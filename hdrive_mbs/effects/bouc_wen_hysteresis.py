@@ -28,11 +28,12 @@ class BoucWenHysteresis(MemoryTwistEffect):
     Leaves out the dependence on load and speed; small inner loops do not close (Maxwell slip does).
     """
 
-    torque_limit: float = parameter("N m", "T_h, largest hysteresis torque", low=0.0, high=1e3)
-    yield_twist: float = parameter("rad", "x_y, twist over which it builds up", above=0.0, high=0.1)
+    torque_limit: float = parameter("N m", "T_h, largest hysteresis torque", low=0.0, high=1e3, typical=(0.05, 50.0))
+    yield_twist: float = parameter("rad", "x_y, twist over which it builds up", above=0.0, high=0.1, typical=(1e-5, 1e-2))
     exponent: float = parameter("1", "n, sharpness of the yield", default=1.0, low=1.0, high=20.0)
     shape: float = parameter("1", "b, share of the sign term (1/2: straight unloading)", default=0.5, low=0.5, high=1.0)
 
+    family: ClassVar[str] = "hysteresis"
     dissipative: ClassVar[bool] = True
     signature: ClassVar[str] = "torque-twist loop of a width that does not depend on speed; loss per cycle, stiffer after each reversal"
 

@@ -23,11 +23,14 @@ class CoulombStribeckFriction(TorqueEffect):
     regularised by tanh.  Leaves out true sticking: below w_0 the body creeps (LuGreFriction holds).
     """
 
-    coulomb: float = parameter("N m", "sliding torque T_C", low=0.0, high=1e3)
-    breakaway: float | None = parameter("N m", "breakaway torque T_S (coulomb if not given)", default=None, low=0.0, high=1e3)
-    stribeck_speed: float = parameter("rad/s", "speed w_S at which the drop has faded", default=1.0, above=0.0)
+    coulomb: float = parameter("N m", "sliding torque T_C", low=0.0, high=1e3, typical=(5e-3, 50.0))
+    breakaway: float | None = parameter(
+        "N m", "breakaway torque T_S (coulomb if not given)", default=None, low=0.0, high=1e3, typical=(5e-3, 50.0)
+    )
+    stribeck_speed: float = parameter("rad/s", "speed w_S at which the drop has faded", default=1.0, above=0.0, typical=(0.01, 20.0))
     smoothing_speed: float = parameter("rad/s", "speed w_0 of the smooth step through zero", default=0.01, above=0.0)
 
+    family: ClassVar[str] = "friction"
     dissipative: ClassVar[bool] = True
     signature: ClassVar[str] = "constant torque offset that changes sign with the direction of rotation"
 

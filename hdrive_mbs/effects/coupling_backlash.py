@@ -27,8 +27,9 @@ class CouplingBacklash(LawEffect):
     contact, and the oil film in the gap.  Hysteresis at the same connection acts across the gap.
     """
 
-    backlash: float = parameter("rad", "full width b of the gap", low=0.0, high=0.2)
+    backlash: float = parameter("rad", "full width b of the gap", low=0.0, high=0.2, typical=(1e-5, 0.05))
 
+    family: ClassVar[str] = "backlash"
     signature: ClassVar[str] = "no torque over a range of twist; knocking at load reversals, a lower resonance at small amplitude"
 
     def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:

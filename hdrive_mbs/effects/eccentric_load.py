@@ -28,11 +28,14 @@ class EccentricLoad(Effect):
     inertia of the part.  Also leaves out what the weight does to the bearings.
     """
 
-    mass: float = parameter("kg", "mass m", low=0.0, high=1e4)
-    radius: float = parameter("m", "distance r of its centre from the axis", low=0.0, high=10.0)
-    start_angle: float = parameter("rad", "a_0, true angle from hanging straight down when the body's angle is 0", default=0.0)
+    mass: float = parameter("kg", "mass m", low=0.0, high=1e4, typical=(0.05, 50.0))
+    radius: float = parameter("m", "distance r of its centre from the axis", low=0.0, high=10.0, typical=(0.02, 0.5))
+    start_angle: float = parameter(
+        "rad", "a_0, true angle from hanging straight down when the body's angle is 0", default=0.0, typical=(-np.pi, np.pi)
+    )
     gravity: float = parameter("m/s^2", "acceleration g of gravity across the shaft", default=9.80665, low=0.0, high=30.0)
 
+    family: ClassVar[str] = "eccentric_load"
     signature: ClassVar[str] = "torque at once per turn of the body at every speed, and a rest position that the body swings back to"
 
     def apply(self, draft: Draft, place: str, name: str) -> None:

@@ -6,6 +6,8 @@ An effect of a user's own is a frozen dataclass that subclasses one of these and
 * TwistEffect: a torque beside a connection, ``torque(time, twist, rate)``
 * LawEffect: a changed connection, ``changed(law)(twist, rate)``
 * MemoryTorqueEffect, MemoryTwistEffect: the first two with states, ``torque(..., state)`` and ``state_rate(name, ..., state)``
+* MotorEffect (motor_effect.py): a changed motor torque, ``delivered(time, speed, torque)``
+* SensorEffect, MemorySensorEffect (sensor_effect.py): a changed reading, ``reading(time, value)``
 * Effect: anything else, ``apply(draft, place, name)``
 """
 
@@ -14,27 +16,52 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from hdrive_mbs.errors import PlaceError
+from hdrive_mbs.effects.places import PLACES
+from hdrive_mbs.errors import ParameterError, PlaceError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.network import Network
 from hdrive_mbs.network.node import Node
-from hdrive_mbs.quantities import Described
+from hdrive_mbs.quantities import Described, snake_case
+
+KINDS = ("force", "kinematic", "parametric", "sensor", "hidden state")
+"""Ways in which an effect enters: a torque or force; a kinematic error; a changed law; a changed reading; dynamics of its own."""
+
+
+class _OwnName:
+    """The family of a class that names none: its own name."""
+
+    def __get__(self, instance: object, owner: type) -> str:
+        return snake_case(owner.__name__)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Effect(Described, ABC):
-    """A physical effect that can be put at a place of a scene."""
+    """A physical effect that can be put at a place of a scene.
+
+    A search for the cause of a gap varies the fields that have a typical range, and leaves the others at their defaults.
+    """
 
     _kind: ClassVar[str] = "effect"
     acts_on: ClassVar[str] = "body"
-    """'body' or 'connection': the kind of place the effect needs."""
+    """'body', 'connection', 'gear', 'motor' or 'sensor': the kind of place the effect needs."""
+    kind: ClassVar[str] = "force"
+    """One of KINDS."""
+    family: ClassVar[str] = _OwnName()  # type: ignore[assignment]
+    """Name under which it is reported; several laws of one phenomenon share it.  A class that gives none has its own."""
     dissipative: ClassVar[bool] = False
     """Whether the effect claims never to give back more than it stores (checked when a scene is assembled)."""
     signature: ClassVar[str] = ""
     """What an engineer would see in a record, in words."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        for name, value, allowed in (("kind", cls.kind, KINDS), ("acts_on", cls.acts_on, tuple(PLACES))):
+            if value not in allowed:
+                raise ParameterError(f"{cls.__name__}.{name} = {value!r}: must be one of {', '.join(allowed)}.")
 
     @abstractmethod
     def apply(self, draft: Draft, place: str, name: str) -> None:
@@ -42,6 +69,11 @@ class Effect(Described, ABC):
 
         Raises PlaceError when the place does not exist or is of the wrong kind.
         """
+
+    @classmethod
+    def places(cls, network: Network) -> tuple[str, ...]:
+        """Where in a network it may sit, each place once: all of the kind ``acts_on``.  Override where fewer make sense."""
+        return PLACES[cls.acts_on](network)
 
 
 def moving_body(effect: Effect, draft: Draft, place: str) -> Node:
@@ -105,6 +137,7 @@ class LawEffect(Effect):
     """A change of the law of a connection.  What it adds to the old law is what ``dissipative`` is about."""
 
     acts_on: ClassVar[str] = "connection"
+    kind: ClassVar[str] = "parametric"
 
     @abstractmethod
     def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:
@@ -210,8 +243,7 @@ class MemoryTwistEffect(_Memory):
         connection = draft.connection(place, type(self).__name__)
 
         def rate_of(own: str, moment: Moment, state: Mapping[str, Value]) -> Value:
-            whole = connection.build()
-            return self.state_rate(own, moment.time, whole.stretch(moment), whole.rate(moment), state)
+            return self.state_rate(own, moment.time, *connection.inside(moment), state)
 
         read = self._add_states(draft, name, rate_of)
 

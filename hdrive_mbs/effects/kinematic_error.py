@@ -32,24 +32,26 @@ class KinematicError(Effect):
     the error changes with load and assembly; other orders are further effects.
     """
 
-    amplitude: float = parameter("rad", "amplitude A at the output, 0-peak", low=0.0, high=0.01)
+    amplitude: float = parameter("rad", "amplitude A at the output, 0-peak", low=0.0, high=0.01, typical=(1e-6, 1e-3))
     order: float = parameter("1", "periods n per turn of the flange it follows", default=2.0, above=0.0, high=1e3)
-    phase: float = parameter("rad", "phase p at angle 0", default=0.0)
+    phase: float = parameter("rad", "phase p at angle 0", default=0.0, typical=(-np.pi, np.pi))
     follows: str = option("'wave_generator' or 'flexspline': the flange whose angle counts", default="wave_generator")
 
-    acts_on: ClassVar[str] = "connection"
+    acts_on: ClassVar[str] = "gear"
+    kind: ClassVar[str] = "kinematic"
+    family: ClassVar[str] = "kinematic_error"
     signature: ClassVar[str] = "vibration and position error at a fixed order of a shaft, resonant where the order meets a mode"
 
     def check(self) -> None:
         if self.follows not in ("wave_generator", "flexspline"):
-            raise ParameterError(f"KinematicError.follows = {self.follows!r}: must be 'wave_generator' or 'flexspline'.")
+            raise ParameterError(f"{type(self).__name__}.follows = {self.follows!r}: must be 'wave_generator' or 'flexspline'.")
 
     def error(self, angle: Value) -> Value:
         """e [rad] at a true angle [rad] of the flange."""
         return self.amplitude * np.sin(self.order * angle + self.phase)
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
-        gear = draft.connection(place, "KinematicError", flanges=(self.follows, "circular_spline"))
+        gear = draft.connection(place, type(self).__name__, flanges=(self.follows, "circular_spline"))
         flange, ring = draft.body(gear.bodies[self.follows]), draft.body(gear.bodies["circular_spline"])
         term = KinematicTerm({flange.name: float(flange.sense), ring.name: -float(ring.sense)}, self.error)
         gear.terms.append(term)

@@ -34,13 +34,16 @@ class LuGreFriction(MemoryTorqueEffect):
     implicit solver.
     """
 
-    coulomb: float = parameter("N m", "sliding torque T_C", low=0.0, high=1e3)
-    breakaway: float | None = parameter("N m", "breakaway torque T_S (coulomb if not given)", default=None, low=0.0, high=1e3)
-    stribeck_speed: float = parameter("rad/s", "speed w_S at which the drop has faded", default=1.0, above=0.0)
-    stiffness: float = parameter("N m/rad", "bristle stiffness s_0", above=0.0)
+    coulomb: float = parameter("N m", "sliding torque T_C", low=0.0, high=1e3, typical=(5e-3, 50.0))
+    breakaway: float | None = parameter(
+        "N m", "breakaway torque T_S (coulomb if not given)", default=None, low=0.0, high=1e3, typical=(5e-3, 50.0)
+    )
+    stribeck_speed: float = parameter("rad/s", "speed w_S at which the drop has faded", default=1.0, above=0.0, typical=(0.01, 20.0))
+    stiffness: float = parameter("N m/rad", "bristle stiffness s_0", above=0.0, typical=(1.0, 1e6))
     damping: float = parameter("N m s/rad", "bristle damping s_1 at low speed", default=0.0, low=0.0)
     viscous: float = parameter("N m s/rad", "viscous drag s_2", default=0.0, low=0.0, high=1e3)
 
+    family: ClassVar[str] = "friction"
     dissipative: ClassVar[bool] = True
     signature: ClassVar[str] = "no motion below a breakaway torque, then a jump; hysteresis against angle after each reversal"
 

@@ -30,10 +30,11 @@ class MaxwellSlipHysteresis(MemoryTwistEffect):
     elements run without a Python callback.
     """
 
-    stiffness: tuple[float, ...] = table("N m/rad", "stiffness k_i of each element", low=0.0)
-    torque_limit: tuple[float, ...] = table("N m", "torque L_i at which each element slips", low=0.0, high=1e3)
+    stiffness: tuple[float, ...] = table("N m/rad", "stiffness k_i of each element", low=0.0, typical=(1e2, 1e5))
+    torque_limit: tuple[float, ...] = table("N m", "torque L_i at which each element slips", low=0.0, high=1e3, typical=(0.05, 20.0))
     rounding: float = parameter("1", "r, part of the limit over which the corner is rounded", default=0.1, low=0.0, high=1.0)
 
+    family: ClassVar[str] = "hysteresis"
     dissipative: ClassVar[bool] = True
     signature: ClassVar[str] = (
         "torque-twist loop that does not depend on speed, with closed inner loops; return paths are the virgin curve doubled"

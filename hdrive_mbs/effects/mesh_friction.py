@@ -34,11 +34,16 @@ class MeshFriction(Effect):
     bearing (which rolls on the flexspline: v larger by 1/u), lubricant and temperature.
     """
 
-    loss_factor: float = parameter("1", "mu, friction torque over ideal torque of the wave generator", low=0.0, high=2.0)
-    no_load: float = parameter("N m", "T_0, friction torque on the wave generator without load", default=0.0, low=0.0, high=1e2)
+    loss_factor: float = parameter(
+        "1", "mu, friction torque over ideal torque of the wave generator", low=0.0, high=2.0, typical=(0.01, 0.6)
+    )
+    no_load: float = parameter(
+        "N m", "T_0, friction torque on the wave generator without load", default=0.0, low=0.0, high=1e2, typical=(1e-3, 1.0)
+    )
     smoothing_speed: float = parameter("rad/s", "speed w_0 of the smooth step through zero", default=0.5, above=0.0)
 
-    acts_on: ClassVar[str] = "connection"
+    acts_on: ClassVar[str] = "gear"
+    family: ClassVar[str] = "mesh_friction"
     dissipative: ClassVar[bool] = True
     signature: ClassVar[str] = "motor torque grows with the size of the load in both senses of power; efficiency below 1 at every speed"
 

@@ -23,8 +23,9 @@ class QuadraticDrag(TorqueEffect):
     at low speed (add ViscousDrag) and the change of density with temperature.
     """
 
-    coefficient: float = parameter("N m s^2/rad^2", "drag coefficient c", low=0.0, high=1e3)
+    coefficient: float = parameter("N m s^2/rad^2", "drag coefficient c", low=0.0, high=1e3, typical=(1e-7, 10.0))
 
+    family: ClassVar[str] = "quadratic_drag"
     dissipative: ClassVar[bool] = True
     signature: ClassVar[str] = "torque that grows with the square of speed; unseen at low speed"
 

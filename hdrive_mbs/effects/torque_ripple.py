@@ -28,11 +28,13 @@ class TorqueRipple(Effect):
     the change of amplitude with speed, and the phase between several orders (add one effect each).
     """
 
-    amplitude: float = parameter("N m", "A, amplitude without load, 0-peak", default=0.0, low=0.0, high=1e3)
-    relative: float = parameter("1", "c, amplitude (0-peak) per motor torque", default=0.0, low=0.0, high=1.0)
-    order: float = parameter("1", "n, periods per turn", above=0.0, high=1e3)
-    phase: float = parameter("rad", "p, phase at angle 0", default=0.0)
+    amplitude: float = parameter("N m", "A, amplitude without load, 0-peak", default=0.0, low=0.0, high=1e3, typical=(1e-3, 5.0))
+    relative: float = parameter("1", "c, amplitude (0-peak) per motor torque", default=0.0, low=0.0, high=1.0, typical=(1e-3, 0.3))
+    order: float = parameter("1", "n, periods per turn", above=0.0, high=1e3, typical=(1.0, 48.0))
+    phase: float = parameter("rad", "p, phase at angle 0", default=0.0, typical=(-np.pi, np.pi))
 
+    acts_on: ClassVar[str] = "motor"
+    family: ClassVar[str] = "torque_ripple"
     signature: ClassVar[str] = "torque and speed vibration at a fixed order of the motor, in proportion to its torque for the relative part"
 
     def apply(self, draft: Draft, place: str, name: str) -> None:

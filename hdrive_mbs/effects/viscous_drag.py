@@ -20,8 +20,9 @@ class ViscousDrag(TorqueEffect):
     temperature and shear.
     """
 
-    coefficient: float = parameter("N m s/rad", "drag coefficient c", low=0.0, high=1e3)
+    coefficient: float = parameter("N m s/rad", "drag coefficient c", low=0.0, high=1e3, typical=(1e-5, 10.0))
 
+    family: ClassVar[str] = "viscous_drag"
     dissipative: ClassVar[bool] = True
     signature: ClassVar[str] = "torque that grows in proportion to speed; coasting down is exponential"
 

@@ -33,7 +33,7 @@ class MotorCharacteristic(Described):
         def torque(moment: object) -> Value:
             return self.torque(moment.time, moment.speed(node.name))  # type: ignore[attr-defined]
 
-        draft.add_torque(f"{name}.torque", node.name, torque)
+        draft.add_torque(f"{name}.torque", node.name, torque, is_motor=True)
         draft.add_channel(f"{name}.torque", "N m", f"air-gap torque of {name}", torque)
 
 

@@ -45,7 +45,7 @@ class CommandedMotor(MotorCharacteristic):
                 f"{name}.lagged_torque", unit="N m", initial=0.0, rate=lambda moment: (limited(moment) - moment.state(state)) / lag
             )
             torque = _state_reader(state)
-        draft.add_torque(f"{name}.torque", node.name, torque)
+        draft.add_torque(f"{name}.torque", node.name, torque, is_motor=True)
         draft.add_channel(f"{name}.torque", "N m", f"air-gap torque of {name}", torque)
         draft.add_channel(f"{name}.torque_limit", "N m", f"torque limit of {name}", lambda moment: limit + 0.0 * moment.time)
 

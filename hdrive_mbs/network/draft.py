@@ -24,6 +24,7 @@ from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Body, Channel, Motion, Network, Rotor, State
 from hdrive_mbs.network.node import Node
 from hdrive_mbs.network.rigid_mass import RigidMass
+from hdrive_mbs.network.sensor_draft import SensorDraft
 from hdrive_mbs.network.station import (
     LATERAL,
     Station,
@@ -53,6 +54,7 @@ class Draft:
         self._elements: list[Element] = []
         self._channels: dict[str, Channel] = {}
         self._readings: list[Reading] = []
+        self._sensors: dict[str, SensorDraft] = {}
         self._sources: dict[str, Reading] = {}  # channel made from another channel -> that channel
         self._finished: tuple[Element, ...] = ()
         self._positions: dict[str, float] = {}  # of places that are no flanges
@@ -115,9 +117,25 @@ class Draft:
         *,
         dissipative: bool = False,
         stored: Callable[[Moment], Value] | None = None,
+        is_motor: bool = False,
     ) -> None:
-        """A torque on a coordinate, positive in its forward sense; ``stored`` is the energy in its states."""
-        self._elements.append(AppliedTorque(name, coordinate, torque, dissipative, stored))
+        """A torque on a coordinate, positive in its forward sense.
+
+        stored : energy in its states
+        is_motor : it is that of the motor ``<motor>`` and called ``<motor>.torque``; effects may change what reaches the rotor
+        """
+        self._elements.append(AppliedTorque(name, coordinate, torque, dissipative, stored, is_motor))
+
+    def add_inertia(self, place: str, inertia: float, asked_by: str = "This") -> None:
+        """More inertia [kg m^2] at a place, or less.  Raises PlaceError where it leaves none, or where the place moves across the axis."""
+        node = self.body(place, asked_by)
+        if node.lateral or not node.inertia + inertia > 0.0:
+            known = [path for path, name in self._flanges.items() if not self._nodes[name].lateral and self._nodes[name].inertia > -inertia]
+            raise PlaceError(
+                f"{asked_by} changes the inertia of {place!r} by {inertia:g} kg m^2, which has {node.inertia:g} kg m^2 "
+                f"that only turn. Places where it can be done: {', '.join(known) or 'none'}."
+            )
+        self._nodes[node.name] = replace(node, inertia=node.inertia + inertia)
 
     def add_relative_torque(self, name: str, factors: dict[str, float], torque: Torque, *, dissipative: bool = False) -> None:
         """A torque(moment, x, dx/dt) that resists along  x = sum(f_i q_i), with its reactions; no twist channels."""
@@ -250,6 +268,22 @@ class Draft:
         known = [name.removesuffix(".torque") for name in torques if name.endswith(".torque")]
         raise PlaceError(f"{asked_by} needs a part with a torque law, but {place!r} has none. Such parts: {', '.join(known) or 'none'}.")
 
+    def change_motor(
+        self, place: str, change: Callable[[Callable[[Moment], Value]], Callable[[Moment], Value]], asked_by: str = "This"
+    ) -> Callable[[Moment], Value]:
+        """Let ``change(torque)`` reach the rotor of a motor in place of its torque; returns it.
+
+        The channel ``<place>.torque`` stays what the characteristic gives.  Raises PlaceError where no motor with a torque law is.
+        """
+        self.body(place, asked_by)
+        for k, element in enumerate(self._elements):
+            if isinstance(element, AppliedTorque) and element.is_motor and element.name == f"{place}.torque":
+                changed = replace(element, torque=change(element.torque))
+                self._elements[k] = changed
+                return changed.torque
+        motors = [item.name.removesuffix(".torque") for item in self._elements if isinstance(item, AppliedTorque) and item.is_motor]
+        raise PlaceError(f"{asked_by} needs a motor with a torque law, but {place!r} is none. Motors: {', '.join(motors) or 'none'}.")
+
     def add_state(self, name: str, *, unit: str, initial: float, rate: Callable[[Moment], Value]) -> str:
         """A first-order state dz/dt = rate(moment); returns its (unique) name."""
         unique, number = name, 2
@@ -290,10 +324,38 @@ class Draft:
         return reading
 
     def add_reading(self, name: str, quantity: str, change: Callable[[Value], Value], *, unit: str | None = None) -> None:
-        """A channel ``change(quantity)``; its unit is that of the quantity unless given."""
+        """A sensor: a channel ``change(quantity)``; its unit is that of the quantity unless given."""
         source = self.read_channel(quantity, asked_by=repr(name))
-        self.add_channel(name, unit or "", f"reading of {quantity}", lambda moment: change(source(moment)))
-        self._sources[name] = source
+        sensor = SensorDraft(name, source, change, unit or "", source)
+        self.add_channel(name, sensor.unit, f"reading of {quantity}", sensor.reading)
+        self._channels[name] = replace(self._channels[name], reads=quantity)
+        self._sources[name], self._sensors[name] = source, sensor
+
+    def sensor(self, place: str, asked_by: str = "This") -> SensorDraft:
+        """The sensor of that name.  Raises PlaceError when there is none."""
+        if place in self._sensors:
+            return self._sensors[place]
+        known = list(self._sensors) or ["none; add a part like Sensor(quantity='load.angle')"]
+        if place in self._flanges or place in self._connections or place in self._aliases:
+            kind = "body" if place in self._flanges else "connection"
+            raise PlaceError(f"{asked_by} acts on a sensor, but {place!r} is a {kind}. Sensors: {', '.join(known)}.")
+        raise unknown_place("sensor", place, known)
+
+    def root_quantity(self, sensor: SensorDraft) -> str:
+        """The channel that a sensor reads, through other sensors if it reads those."""
+        path = [sensor.name, sensor.source.quantity]
+        while path[-1] in self._sensors and path[-1] not in path[:-1]:
+            path.append(self._sensors[path[-1]].source.quantity)
+        return path[-1]
+
+    def keep_true_reading(self, sensor: SensorDraft) -> None:
+        """The channel ``<sensor>.true``: what a sensor would show undisturbed."""
+        name = f"{sensor.name}.true"
+        if name not in self._channels:
+            self.add_channel(
+                name, sensor.unit, f"reading of {sensor.source.quantity} without the effects on {sensor.name}", sensor.true_reading
+            )
+            self._sources[name] = sensor.source
 
     def holding_torque(self, node: Node) -> Callable[[Moment], Value]:
         """Torque [N m] that keeps a prescribed place on its motion:  J d2(angle)/dt2 - sum of the torques on it.

@@ -7,7 +7,7 @@ coordinate it touches, or the rate of its state.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Protocol
 
@@ -72,7 +72,8 @@ class Connection:
 
     ``torque(moment, x, dx/dt)`` is positive when it resists a positive stretch; by virtual work the
     torque on coordinate i is -torque * dx/dq_i, so power is conserved for every ratio f_i.
-    ``parts`` are the claims of laws that act inside it (see ConnectionDraft.claim).
+    ``parts`` are the claims of laws that act inside it (see ConnectionDraft.claim); ``flanges`` names
+    the body at each flange of a shaft or gear (none for a torque that merely acts between bodies).
     """
 
     name: str
@@ -81,6 +82,7 @@ class Connection:
     terms: tuple[KinematicTerm, ...] = ()
     dissipative: bool = False
     parts: tuple[Claim, ...] = ()
+    flanges: Mapping[str, str] = field(default_factory=dict)
 
     def claims(self) -> tuple[Claim, ...]:
         """What the element and the laws inside it promise."""
@@ -116,13 +118,14 @@ class Connection:
 
 @dataclass(frozen=True)
 class AppliedTorque:
-    """A torque on one coordinate, positive in its forward sense."""
+    """A torque on one coordinate, positive in its forward sense; ``is_motor``: of a motor, on its rotor."""
 
     name: str
     coordinate: str
     torque: Callable[[Moment], Value]
     dissipative: bool = False
     stored: Callable[[Moment], Value] | None = None
+    is_motor: bool = False
 
     def claims(self) -> tuple[Claim, ...]:
         """What the torque promises."""

@@ -83,6 +83,7 @@ class Channel:
 
     slope : channel that holds its rate
     factors : of coordinates, where it is a lateral displacement; a run then has ``<name>_acceleration`` too
+    reads : channel that a sensor reads, where this is its reading
     """
 
     name: str
@@ -91,6 +92,7 @@ class Channel:
     read: Callable[[Moment], Value]
     slope: str | None = None
     factors: Mapping[str, float] | None = None
+    reads: str | None = None
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,12 @@ from hdrive_mbs.tables import check_table
 
 @dataclass(frozen=True, kw_only=True)
 class AngleTable(SpeedProfile):
-    """Cubic spline through (time, angle): angle, speed and acceleration are continuous.  Outside it the speed stays.
+    """Cubic spline through (time, angle), counted from t = 0: angle, speed and acceleration are continuous.
 
-    For angles without noise: a spline goes through every point, and its second derivative multiplies what is wrong
-    there by 12 over the square of the step.  Smooth a measured angle before.
+    Beyond the table the speed stays as it is at its ends, where the acceleration is zero.
+
+    A spline goes through every point, and its acceleration magnifies what is wrong there by up to 12 over the square
+    of the step: smooth a measured angle before.
     """
 
     times: tuple[float, ...] = table("s", "times, rising")
@@ -28,7 +30,8 @@ class AngleTable(SpeedProfile):
         check_table(self, "times", "angles")
 
     def angle(self, time: Value) -> Value:
-        return self._pieces(time)
+        pieces = self._pieces
+        return pieces(time) - float(pieces(0.0))
 
     @cached_property
     def _pieces(self) -> Pieces:

@@ -20,10 +20,7 @@ def _kinematic_error(rng: np.random.Generator, at: str, specimen: Specimen, stre
     order = float(rng.choice([1, 2, 3]) if of_output else rng.choice([1, 2, 2, 2, 4, 6]))
     amplitude = strength * log_uniform(rng, *((4e-6, 5e-4) if of_output else (1.5e-6, 2e-4) if order <= 2 else (1e-6, 5e-5)))
     start, depth = phase(rng), rng.uniform(0.0, 0.25)
-    if of_output:
-        terms = [(amplitude, order, start)]
-    else:
-        terms = with_side_bands(amplitude, order, start, depth, 1.0 / specimen.plant.line.ratio)
+    terms = with_side_bands(amplitude, order, start, 0.0 if of_output else depth, 1.0 / specimen.plant.line.ratio)
     sides = [(rng.uniform(0.05, 0.35) * amplitude, order * factor, phase(rng)) for factor in (2.0, 3.0)]
     table = orders(*terms, *sides)
     symbols = {
@@ -54,7 +51,7 @@ def _hysteresis(rng: np.random.Generator, at: str, specimen: Specimen, strength:
 
 def _lost_motion(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     """A wider gap with rounded edges, or one that closes like a soft layer."""
-    extra = strength * log_uniform(rng, 0.2, 4.0) * specimen.values["lost_motion"]  # the width is known to 5 %
+    extra = strength * log_uniform(rng, 0.3, 4.0) * specimen.values["lost_motion"]  # the width is known to 5 %, so never faint
     sizes = {"half_gap": 0.5 * (specimen.values["lost_motion"] + extra)}
     sizes |= {"edge": rng.uniform(0.05, 0.2) * extra} if rng.random() < 0.5 else {"entry": rng.uniform(0.05, 0.2) * extra}
     symbols = {"spring_" + name: value for name, value in sizes.items()}

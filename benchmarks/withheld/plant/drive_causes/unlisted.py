@@ -57,7 +57,10 @@ def _modulation(rng: np.random.Generator, at: str, specimen: Specimen, strength:
 
 def _bulge(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> dict[str, float]:
     """Softer or stiffer about a middle torque: another shape of the stiffness curve."""
-    return {"bulge": float(strength * log_uniform(rng, 0.03, 0.35) * rng.choice([-1.0, 1.0])), "bulge_twist": log_uniform(rng, 4e-4, 1.2e-3)}
+    return {
+        "bulge": float(strength * log_uniform(rng, 0.03, 0.35) * rng.choice([-1.0, 1.0])),
+        "bulge_twist": log_uniform(rng, 4e-4, 1.2e-3),
+    }
 
 
 def _fade(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> dict[str, float]:
@@ -65,7 +68,10 @@ def _fade(rng: np.random.Generator, at: str, specimen: Specimen, strength: float
 
 
 def _relaxing(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> dict[str, float]:
-    return {"branch_stiffness": specimen.values["k_out"] * strength * log_uniform(rng, 0.02, 0.6), "branch_time": log_uniform(rng, 4e-3, 0.2)}
+    return {
+        "branch_stiffness": specimen.values["k_out"] * strength * log_uniform(rng, 0.02, 0.6),
+        "branch_time": log_uniform(rng, 4e-3, 0.2),
+    }
 
 
 def _slipping(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> dict[str, float]:

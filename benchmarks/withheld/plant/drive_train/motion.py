@@ -13,7 +13,7 @@ import numpy as np
 from benchmarks.withheld.case import Array
 from benchmarks.withheld.plant.compiled import compiled
 from benchmarks.withheld.plant.drive_train import excitation
-from benchmarks.withheld.plant.drive_train.banks import BANKS, no_memory, remember
+from benchmarks.withheld.plant.drive_train.banks import BANKS, MESH_BANK, no_memory, remember
 from benchmarks.withheld.plant.drive_train.line import (
     BANK_PLACE,
     BANK_RATE,
@@ -69,7 +69,8 @@ SCALE[HYSTERESIS + 3] = 0.1  # N m, brake
 # rate of a bank's place below which a reversal needs no step of its own (moves less than noise in a sample)
 STILL = np.array([2e-3, 2e-3, 2e-6, 2e-3, 2e-6])
 SHORTEST = 1e-9  # s
-TOLERANCE = 1e-3
+TOLERANCE = 1e-4
+SMALL_CHANGE = 0.02  # of the limit of a speed-dependent slider in a step
 
 
 class Motion(NamedTuple):
@@ -151,7 +152,7 @@ def _integrate(reference, brake, sample, p, tables, memory, tolerance):
                 if step < SHORTEST:
                     return states, reports, -k
                 continue
-            share = _reversal(report, after, tables.banks)
+            share = min(_reversal(report, after, tables.banks), _change_of_limits(y, trial, p, tables))
             if share < 0.98 and h > 1e-7:
                 step = max(h * share, 1e-8)
                 continue
@@ -180,3 +181,14 @@ def _reversal(before, after, banks):
             if first * second < 0.0 and abs(first) > STILL[bank] and abs(second) > STILL[bank]:
                 share = min(share, first / (first - second))
     return share
+
+
+@compiled
+def _change_of_limits(before, after, p, tables):
+    """Share of the step over which the limits of a speed-dependent slider change little: a rising limit is followed from step to step."""
+    share = 1.0
+    for bank in range(MESH_BANK):
+        if tables.banks.active[bank] != 0.0:
+            first, second = bank_factor(bank, before, p, tables), bank_factor(bank, after, p, tables)
+            share = min(share, SMALL_CHANGE * first / max(abs(second - first), 1e-9))
+    return max(share, 0.1)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from benchmarks.withheld.case import Array
-from benchmarks.withheld.plant.drive_train.motion import motion
+from benchmarks.withheld.plant.drive_train.motion import TOLERANCE, motion
 from benchmarks.withheld.plant.drive_train.rates import Plant, Tables, nominal_plant
 from benchmarks.withheld.plant.drive_train.sensors import Sensors, clean
 
@@ -23,9 +23,9 @@ class Specimen:
     truth: tuple[Mapping[str, Any], ...] = ()
     put_in: Mapping[str, Mapping[str, Any]] = field(default_factory=lambda: {"effect": {}, "sensor": {}, "parameter_factors": {}})
 
-    def channels(self, record: str) -> dict[str, Array]:
+    def channels(self, record: str, *, tolerance: float = TOLERANCE) -> dict[str, Array]:
         """The record without noise."""
-        return clean(motion(self.plant, self.tables, record), self.sensors)
+        return clean(motion(self.plant, self.tables, record, tolerance=tolerance), self.sensors)
 
     def part(self, name: str, **changes: float) -> Specimen:
         """With changed numbers in one part of the plant."""

@@ -1,8 +1,8 @@
-"""Channels in units of their noise, and how visible a change is once parameters may move."""
+"""Channels in units of their noise."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from scipy.signal import lfilter
@@ -36,13 +36,3 @@ def _torque_white(torque: Array) -> Array:
     theta = half - np.sqrt(half**2 - 1.0)
     size = np.sqrt(-neighbour / theta)
     return np.asarray(lfilter([1.0, -memory], [1.0, -theta], torque) / size)
-
-
-def detectability(signature: Array, jacobian: Sequence[Array]) -> tuple[float, float]:
-    """(|s|^2, min over d of |s - J d|^2 + |d|^2), columns of J for one standard deviation of a parameter each."""
-    columns = np.column_stack(jacobian) if len(jacobian) else np.zeros((signature.size, 0))
-    raw = float(signature @ signature)
-    if columns.shape[1] == 0:
-        return raw, raw
-    along = columns.T @ signature
-    return raw, raw - float(along @ np.linalg.solve(columns.T @ columns + np.eye(columns.shape[1]), along))

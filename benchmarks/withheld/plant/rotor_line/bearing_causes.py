@@ -16,7 +16,7 @@ BEARING = {"bearing_1": 0, "bearing_2": 1}
 def bearing_clearance(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """Radial play: 1 linear contact, 2 line contact p^(10/9), its stiffness at 800 N equal to the bearing's; a thin film in the gap."""
     law, b = one_of(rng, 1, 2), BEARING[place]
-    made, gap = bench.machine(), grown(strength, 5e-8 if law == 1 else 1e-6, 2e-5)
+    made, gap = bench.machine(), grown(strength, 5e-8 if law == 1 else 2e-7, 2e-5)
     k, d = made.ring_stiffness[b], made.ring_damping[b]
     row = bench.causes.bearing[b]
     row[:4] = law, gap, rng.uniform(0.0, 0.03), rng.uniform(0.1, 1.0)
@@ -37,7 +37,7 @@ def bearing_cubic_stiffness(bench: Planted, place: str, strength: float, rng: np
 def bearing_cross_coupling(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
     """A skew stiffness that drives forward whirl; the laws are in laws.cross_force."""
     law, b = one_of(rng, 1, 2, 3), BEARING[place]
-    size = grown(strength, 7e5, 3e7)
+    size = grown(strength, 7e5, 1.4e7)
     bench.causes.cross[b] = law, size, rng.uniform(-0.3, 0.3), rng.uniform(5e-5, 3e-4)
     bench.effect.update(cross=size, cross_law=law, loc=b)
 

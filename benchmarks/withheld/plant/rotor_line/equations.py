@@ -119,7 +119,7 @@ def _section(k, L, EI, beta, s, v, f):
 
 @compiled
 def _crack(row, length, bending, angle, s):
-    """Take the rotation at the crack's hinge out of the deformation s of its section."""
+    """Take the rotation at the crack's hinge out of the deformation s of its section; returns the torque on the spin."""
     k = int(row[1])
     L, EI, a = length[k], bending[k], row[2] * length[k]
     i, j = 4 * k, 4 * k + 4
@@ -141,6 +141,7 @@ def _crack(row, length, bending, angle, s):
     s[j + 3] -= rx
     s[j + 1] -= ry * (L - a)
     s[j + 2] += ry
+    return r1 * across - r2 * along
 
 
 @compiled
@@ -172,9 +173,10 @@ def slope(t, y, torque, hx, hy, M, C, out, s, w, f, r):
             w[k + 1] -= o * x
             w[k + 2] += o * th
             w[k + 3] -= o * ps
+    cracked = 0.0
     if C.crack[3] != 0.0:
         k = int(C.crack[1])
-        _crack(C.crack, M.length, M.bending, 0.5 * (q[SPIN + k] + q[SPIN + k + 1]), s)
+        cracked = _crack(C.crack, M.length, M.bending, 0.5 * (q[SPIN + k] + q[SPIN + k + 1]), s)
     for k in range(3):
         _section(k, M.length[k], M.bending[k], M.shaft_damping, s, w, f)
     T = out[n + SPIN : n + SPIN + 4]  # torques first, accelerations later
@@ -184,6 +186,9 @@ def slope(t, y, torque, hx, hy, M, C, out, s, w, f, r):
         tw = M.torsion[k] * (q[SPIN + k + 1] - q[SPIN + k] + M.shaft_damping * (v[SPIN + k + 1] - v[SPIN + k]))
         T[k] += tw
         T[k + 1] -= tw
+    if cracked != 0.0:
+        T[int(C.crack[1])] += 0.5 * cracked
+        T[int(C.crack[1]) + 1] += 0.5 * cracked
     if bowed:
         for i in range(4):
             k = 4 * i

@@ -103,7 +103,9 @@ def static_deflection(machine: Machine, causes: Causes) -> FloatArray:
     raise UnstableError("no static deflection found: the bench does not rest with the planted cause")
 
 
-def run(machine: Machine, causes: Causes, record: str, *, tolerance: float = TOLERANCE, rest: FloatArray | None = None) -> Run:
+def run(
+    machine: Machine, causes: Causes, record: str, *, tolerance: float = TOLERANCE, rest: FloatArray | None = None, gain: float = GAIN
+) -> Run:
     """Simulate one record from the static deflection."""
     goal = reference(record)
     force = hammer(record, goal.size)
@@ -115,7 +117,7 @@ def run(machine: Machine, causes: Causes, record: str, *, tolerance: float = TOL
     y[MORE:] = start_aux(causes, speed, rest)
     states, slopes, torque = np.empty((goal.size, STATES)), np.empty((goal.size, STATES)), np.empty(goal.size)
     active = STATES if causes.internal[0] == 2.0 else ACTIVE_PLAIN
-    steps = integrate(y, goal, force, RATE, GAIN, LIMIT, machine, causes, error_scales(tolerance), active, states, torque, slopes)
+    steps = integrate(y, goal, force, RATE, gain, LIMIT, machine, causes, error_scales(tolerance), active, states, torque, slopes)
     if steps < 0:
         raise UnstableError(f"{record}: the plant left its range (0.05 m); the planted cause is too strong")
     return Run(np.arange(goal.size) / RATE, states, slopes, torque, force, steps)

@@ -60,7 +60,7 @@ def misalignment(bench: Planted, place: str, strength: float, rng: np.random.Gen
     law = one_of(rng, 1, 1, 2, 3)
     row = bench.causes.misalignment
     if law == 2:
-        k, part, offset, direction = 2.5e5, rng.uniform(0.15, 0.4), grown(strength, 1.5e-6, 8e-4), phase(rng)
+        k, part, offset, direction = 4e4, rng.uniform(0.15, 0.4), grown(strength, 5e-6, 4e-3), phase(rng)
         row[:4] = 2, k, part, phase(rng)
         row[4:8] = offset * math.cos(direction), offset * math.sin(direction), rng.uniform(0.1, 0.5) * offset, phase(rng)
         bench.effect.update(mis_offset=offset, mis_stiffness=k, mis_part=part)
@@ -87,9 +87,9 @@ def rub(bench: Planted, place: str, strength: float, rng: np.random.Generator) -
     """A stator around a rotor with little room; the laws are in laws.rub_force."""
     law, station = one_of(rng, 1, 2, 3), STATION[place]
     travel, rest = bench.travel(station), bench.rest()
-    gap = travel * (1.0 - grown(strength, 0.015, 0.65))
+    gap = travel * (1.0 - grown(strength, 0.03, 0.65))
     shift, way = rng.uniform(0.0, 0.08) * (travel - gap), phase(rng)
-    k = grown(strength, 2e5, 1e7)
+    k = grown(strength, 4e5, 1e7)
     row = bench.causes.rub
     row[:4] = law, gap, rest[4 * station] + shift * math.cos(way), rest[4 * station + 1] + shift * math.sin(way)
     row[4:10] = k, rng.uniform(50.0, 500.0), rng.uniform(0.05, 0.2), 0.05, rng.uniform(0.04, 0.09), 0.0

@@ -1,0 +1,38 @@
+"""Kinematic error of a gear with several harmonics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hdrive_mbs.effects.harmonics import harmonics
+from hdrive_mbs.effects.kinematic_error import KinematicError
+from hdrive_mbs.expression import Value
+from hdrive_mbs.quantities import parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class HarmonicKinematicError(KinematicError):
+    """Kinematic error with three harmonics of one order: n, 2 n and 3 n.
+
+    twist = phi_wg/u - phi_fs + e,  e = sum(A_k sin(k n a + p_k)),  k = 1, 2, 3
+
+    with signs, place and reaction as in KinematicError.  With n = 2 on the wave generator these are its orders
+    2, 4 and 6, with n = 1 on the flexspline the orders 1, 2 and 3 of the output; use one effect for each.
+
+    Source: Tuttle, Seering, IEEE Trans. Robotics and Automation 12 (1996) 368, whose drives show errors at the first
+    even orders of the wave generator.  Leaves out that the error changes with load and assembly.
+    """
+
+    second_amplitude: float = parameter("rad", "A_2 at order 2 n, 0-peak", default=0.0, low=0.0, high=0.01, typical=(1e-6, 1e-3))
+    second_phase: float = parameter("rad", "p_2, phase at angle 0", default=0.0, typical=(-np.pi, np.pi))
+    third_amplitude: float = parameter("rad", "A_3 at order 3 n, 0-peak", default=0.0, low=0.0, high=0.01, typical=(1e-6, 1e-3))
+    third_phase: float = parameter("rad", "p_3, phase at angle 0", default=0.0, typical=(-np.pi, np.pi))
+
+    signature: ClassVar[str] = "vibration and position error at several multiples of an order, resonant where each meets a mode"
+
+    def error(self, angle: Value) -> Value:
+        parts = (self.amplitude, self.phase), (self.second_amplitude, self.second_phase), (self.third_amplitude, self.third_phase)
+        return harmonics(angle, self.order, parts)

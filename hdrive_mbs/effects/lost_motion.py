@@ -1,0 +1,39 @@
+"""Lost motion of a gear or coupling: a dead zone of the elastic torque."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hdrive_mbs.effects.dead_zone import dead_zone
+from hdrive_mbs.effects.effect import LawEffect
+from hdrive_mbs.expression import Value
+from hdrive_mbs.quantities import parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class LostMotion(LawEffect):
+    """A dead zone in front of the law of a connection, in which its damping goes on.
+
+    tau = T(d(x), v),  d(x) = x + (sqrt((x - b/2)^2 + e^2) - sqrt((x + b/2)^2 + e^2))/2
+
+    with the law T(twist, rate) as it is without the effect.  For e = 0 the law counts from the edges
+    of the gap; e > 0 is a film or a soft flank that rounds the corners over about e.  A law with lost
+    motion of its own gets b more.  The elastic torque depends on x alone, so no energy is made.
+
+    Source: dead-zone model, Nordin, Gutman, Automatica 38 (2002) 1633, with the damping of seed F
+    (2)-(3), which acts inside the gap too; rounding as of a hyperbola.  Leaves out friction inside the
+    gap (add hysteresis) and flanks that come apart without pulling (CouplingBacklash).
+    """
+
+    width: float = parameter("rad", "full width b of the gap", low=0.0, high=0.2, typical=(1e-5, 0.01))
+    film: float = parameter("rad", "twist e over which the corners are rounded; 0 for sharp ones", default=0.0, low=0.0, high=0.1)
+
+    family: ClassVar[str] = "backlash"
+    signature: ClassVar[str] = "no elastic torque over a range of twist; offset between both senses, a soft resonance at small torque"
+
+    def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:
+        if self.width == 0.0:
+            return law
+        return lambda twist, rate: law(dead_zone(twist, self.width, self.film), rate)

@@ -1,0 +1,352 @@
+"""A rotor bench as its builder knows it: two unbalanced rotors on a shaft in two bearings on elastic supports.
+
+The numbers are those of the bench's data sheet (withheld cases, round 1, rotor_bench.toml).  At 4 kHz it records the held
+torque, an encoder at the drive end, probes at both rotors and accelerometers on both housings, in three experiments:
+``run_up``, ``steps`` of speed, and ``bump``, a hammer on rotor 1 at standstill.
+
+    from models import rotor_bench
+    scene = rotor_bench.build("run_up")
+    response = hm.simulate(scene, 4.2, solver=rotor_bench.SOLVER, **rotor_bench.start("run_up"))
+
+With ``spin=(times, angles)`` the drive end follows its measured angle in place of its controller: what is wrong in drag
+and inertia then does not add up in the phase of the unbalance.  The data sheet has no axial motion; here bearing 1
+locates the shaft, and nothing excites it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import make_lsq_spline
+from scipy.linalg import expm
+
+import hdrive_mbs as hm
+from hdrive_mbs.analysis.line_matrices import LineMatrices
+from hdrive_mbs.analysis.rotor_point import rotor_point
+from hdrive_mbs.expression import Value
+from hdrive_mbs.tables import EDGE
+
+FloatArray = npt.NDArray[np.float64]
+
+# -- the data sheet ------------------------------------------------------------------------------------
+
+POSITIONS = {"bearing_1": 0.0, "rotor_1": 0.42, "bearing_2": 0.78, "rotor_2": 0.95}
+"""Of the stations along the shaft [m]; the drive end is at bearing 1."""
+
+AXIAL_STIFFNESS, AXIAL_DAMPING = 1e7, 1e3
+"""Of bearing 1 [N/m, N s/m]: ours, the data sheet has none."""
+
+BEARINGS, SECTIONS = ("bearing_1", "bearing_2"), ("section_1", "section_2", "section_3")
+
+NOMINAL: dict[str, float] = {
+    "youngs_modulus": 2.06e11,
+    "shear_modulus": 7.9e10,
+    "shaft_diameter": 0.045,
+    "shaft_damping": 3.0e-5,  # s, over stiffness, not rotating, bending and torsion
+    "drag": 0.002,  # N m s/rad at each station
+    "rotor_1_mass": 24.0,
+    "rotor_1_polar_inertia": 0.36,
+    "rotor_1_transverse_inertia": 0.21,
+    "rotor_1_eccentricity": 8e-6,
+    "rotor_1_angle": 0.6,
+    "rotor_1_tilt": 2e-4,
+    "rotor_1_tilt_angle": -1.1,
+    "rotor_2_mass": 7.0,
+    "rotor_2_polar_inertia": 0.055,
+    "rotor_2_transverse_inertia": 0.032,
+    "rotor_2_eccentricity": 5e-6,
+    "rotor_2_angle": 2.2,
+    "ring_mass": 1.1,
+    "ring_polar_inertia": 3e-3,
+    "ring_transverse_inertia": 2.5e-3,
+    "bearing_stiffness": 6.5e7,  # ring to housing
+    "bearing_damping": 2500.0,
+    "tilt_stiffness": 2.0e4,  # ring to ground
+    "tilt_damping": 4.0,
+    "housing_mass": 9.0,
+    "support_stiffness_x": 3.2e7,
+    "support_stiffness_y": 4.1e7,
+    "support_damping": 6000.0,
+}
+"""Parameters of the bench, SI.  Rings, bearings, housings and supports are alike at both bearings."""
+
+KNOWLEDGE: dict[str, float] = {
+    "youngs_modulus": 0.006,
+    **{f"rotor_{k}_{what}": 0.006 for k in (1, 2) for what in ("mass", "polar_inertia", "transverse_inertia")},
+    **dict.fromkeys(("bearing_stiffness", "support_stiffness_x", "support_stiffness_y"), 0.02),
+    **dict.fromkeys(("bearing_damping", "support_damping", "shaft_damping"), 0.08),
+    "rotor_1_eccentricity": 0.05,
+    "rotor_2_eccentricity": 0.05,
+}
+"""Standard deviation of the logarithm of each parameter that is not exact, independent of each other."""
+
+PATHS: dict[str, tuple[str, ...]] = {
+    "youngs_modulus": tuple(f"{name}.youngs_modulus" for name in SECTIONS),
+    "shear_modulus": tuple(f"{name}.shear_modulus" for name in SECTIONS),
+    "shaft_diameter": tuple(f"{name}.diameter" for name in SECTIONS),
+    "shaft_damping": tuple(f"{name}.damping" for name in SECTIONS),
+    "drag": tuple(f"drag_{name}.coefficient" for name in POSITIONS),
+    **{name: (f"{name[:7]}.{name[8:]}",) for name in NOMINAL if name.startswith("rotor_")},
+    **{f"ring_{what}": tuple(f"{name}.{what}" for name in BEARINGS) for what in ("mass", "polar_inertia", "transverse_inertia")},
+    **{f"bearing_{what}": tuple(f"{name}.law.{what}_{d}" for name in BEARINGS for d in ("xx", "yy")) for what in ("stiffness", "damping")},
+    **{f"tilt_{what}": tuple(f"{name}.law.{what}_{d}" for name in BEARINGS for d in ("psi", "theta")) for what in ("stiffness", "damping")},
+    "housing_mass": tuple(f"{name}.housing.mass" for name in BEARINGS),
+    **{f"support_stiffness_{d}": tuple(f"{name}.housing.stiffness_{d}" for name in BEARINGS) for d in "xy"},
+    "support_damping": tuple(f"{name}.housing.damping_{d}" for name in BEARINGS for d in "xy"),
+}
+"""Where each parameter sits in the scene, for ``scene.replacing``."""
+
+GAIN, TORQUE_LIMIT, SAMPLE_TIME = 4.0, 170.0, 1.0 / 4000.0
+"""Speed control at the drive end [N m s/rad, N m, s]: it reads speed and reference and holds its torque for a sample."""
+
+REFERENCES: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
+    "run_up": ((0.0, 0.1, 3.6, 4.2), (0.0, 20.0, 1000.0, 1000.0)),
+    "steps": (
+        (0.0, 0.6, 0.8, 1.4, 1.6, 2.2, 2.4, 3.0, 3.2, 3.8, 4.0, 4.8),
+        (180.0, 180.0, 320.0, 320.0, 480.0, 480.0, 640.0, 640.0, 800.0, 800.0, 940.0, 940.0),
+    ),
+    "bump": ((0.0, 1.2), (0.0, 0.0)),
+}
+"""Record -> times [s] and speed references [rad/s], straight lines between.  A record lasts until the last time."""
+
+HAMMER: dict[str, float] = {"x": 0.050, "y": 0.650}
+"""Start of the blow on rotor 1 in each direction, record bump [s]."""
+BLOW, BLOW_TIME = 2500.0, 3e-3
+"""Peak [N] and length [s] of a blow, a half sine, sampled and held."""
+
+CHANNELS: dict[str, str] = {
+    "motor_torque": "drive.torque",
+    "spin_angle": "bearing_1.angle",
+    **{f"r{k}_{d}": f"rotor_{k}.{d}" for k in (1, 2) for d in "xy"},
+    **{f"h{k}_a{d}": f"bearing_{k}.housing.{d}_acceleration" for k in (1, 2) for d in "xy"},
+    **{f"hammer_{d}": f"hammer.force_{d}" for d in "xy"},
+}
+"""Column of a record -> channel of the scene.  The torque is what is held *from* a sample on: compare it in the middle
+of the hold.  With a measured spin there is no torque to compare."""
+
+INPUTS = ("hammer_x", "hammer_y")
+OFFSET_FREE = ("r1_x", "r1_y", "r2_x", "r2_y")
+"""Columns whose offset is unknown and another one in each record."""
+
+NOISE: dict[str, float] = {
+    "motor_torque": 0.05,
+    "spin_angle": 0.0,
+    **dict.fromkeys(("r1_x", "r1_y", "r2_x", "r2_y"), 2.5e-7),
+    **dict.fromkeys(("h1_ax", "h1_ay", "h2_ax", "h2_ay"), 0.05),
+    **dict.fromkeys(INPUTS, 1.0),
+}
+"""Standard deviation of the white noise of each column, SI."""
+
+RESOLUTION: dict[str, float] = {
+    "motor_torque": 0.02,
+    "spin_angle": 2.0 * math.pi / 8192.0,
+    **dict.fromkeys(("r1_x", "r1_y", "r2_x", "r2_y"), 1e-7),
+    **dict.fromkeys(("h1_ax", "h1_ay", "h2_ax", "h2_ay"), 0.02),
+}
+"""Steps of the columns that are rounded, after the noise is added, SI."""
+
+KNOT_TIME = 0.02
+"""Distance of the knots of the spline that smooths what is left of a measured angle [s]: 80 samples."""
+
+
+def noise() -> dict[str, float]:
+    """Standard deviation of each column: white noise and rounding (a uniform error of one step)."""
+    return {name: math.hypot(sigma, RESOLUTION.get(name, 0.0) / math.sqrt(12.0)) for name, sigma in NOISE.items()}
+
+
+# -- the scene -----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldSpeedControl(hm.MotorCharacteristic):
+    """A sampled speed controller as a law of continuous time:  M = clip(k (r(t) - w), -M_max, M_max).
+
+    The controller holds M_k = k (ref_k - w_k) for a sample.  With the speed v(t) of the line under exactly this control,
+    worked out before, the same torque is k (r(t) - v(t)) with  r(t) = ref_k + v(t) - v_k  in sample k; here r is a line
+    in each sample, which keeps the impulse of the torque.  So where the line turns like v the law is right, and only a
+    deviation w - v is fed back without the half sample of delay that it has in truth.
+    """
+
+    gain: float = hm.parameter("N m s/rad", "k, torque per speed error", above=0.0)
+    torque_limit: float = hm.parameter("N m", "largest torque M_max", above=0.0)
+    times: tuple[float, ...] = hm.table("s", "times of the corrected reference, rising")
+    references: tuple[float, ...] = hm.table("rad/s", "corrected reference r at these times")
+
+    def torque(self, time: Value, speed: Value) -> Value:
+        return np.clip(self.gain * (np.interp(time, self.times, self.references) - speed), -self.torque_limit, self.torque_limit)
+
+
+def build(
+    record: str = "run_up",
+    *,
+    spin: tuple[Sequence[float], Sequence[float]] | None = None,
+    hammer: Mapping[str, Sequence[float]] | None = None,
+    **parameters: float,
+) -> hm.Scene:
+    """The bench as it is driven in a record.
+
+    record : "run_up", "steps" or "bump"
+    spin : (times, measured angles of the drive end) [s, rad]: follow this angle, smoothed, instead of the reference
+    hammer : direction -> force [N] at each sample from t = 0, instead of the two blows of the data sheet
+    parameters : other values for those of NOMINAL
+
+    Raises ParameterError for an unknown record or parameter.
+    """
+    if record not in REFERENCES:
+        raise hm.ParameterError(f"record = {record!r}: must be one of {', '.join(REFERENCES)}.")
+    for name in parameters:
+        if name not in NOMINAL:
+            raise hm.ParameterError(f"No parameter {name!r}. The rotor bench has: {', '.join(NOMINAL)}.")
+    free = _line(NOMINAL | parameters, _blows(record) if hammer is None else hammer)
+    return free.replacing({"drive.characteristic": _controller(record, free) if spin is None else _measured_spin(record, free, *spin)})
+
+
+def _line(p: Mapping[str, float], blows: Mapping[str, Sequence[float]]) -> hm.Scene:
+    """The bench with a drive that does nothing."""
+    housing = hm.Housing(
+        mass=p["housing_mass"],
+        stiffness_x=p["support_stiffness_x"],
+        stiffness_y=p["support_stiffness_y"],
+        damping_x=p["support_damping"],
+        damping_y=p["support_damping"],
+    )
+
+    def bearing(*, locating: bool) -> hm.Bearing:
+        law = hm.LinearBearing.isotropic(
+            radial=p["bearing_stiffness"],
+            damping=p["bearing_damping"],
+            axial=AXIAL_STIFFNESS if locating else 0.0,
+            axial_damping=AXIAL_DAMPING if locating else 0.0,
+            tilt=p["tilt_stiffness"],
+            tilt_damping=p["tilt_damping"],
+        )
+        ring = {what: p[f"ring_{what}"] for what in ("mass", "polar_inertia", "transverse_inertia")}
+        return hm.Bearing(law=law, housing=housing, **ring)
+
+    parts: dict[str, hm.Component] = {
+        "bearing_1": bearing(locating=True),
+        "rotor_1": hm.Rotor(**_of(p, "rotor_1")),
+        "bearing_2": bearing(locating=False),
+        "rotor_2": hm.Rotor(**_of(p, "rotor_2")),
+    }
+    chain = ["drive", "bearing_1"]
+    for section, (left, right) in zip(SECTIONS, itertools.pairwise(POSITIONS), strict=True):
+        parts[section] = hm.ShaftSection(
+            length=POSITIONS[right] - POSITIONS[left],
+            diameter=p["shaft_diameter"],
+            youngs_modulus=p["youngs_modulus"],
+            shear_modulus=p["shear_modulus"],
+            damping=p["shaft_damping"],
+        )
+        chain += [section, right]
+    parts |= {"drive": hm.DriveTorque(characteristic=hm.TorqueHistory(times=(0.0, 1.0), torques=(0.0, 0.0))), "gravity": hm.Gravity()}
+    connections = [tuple(chain)]
+    if blows:
+        times = SAMPLE_TIME * np.arange(max(map(len, blows.values())))
+        forces = {f"forces_{direction}": tuple(values) for direction, values in blows.items()}
+        parts["hammer"] = hm.LateralForce(times=tuple(times), held=True, **forces)
+        connections.append(("hammer", "rotor_1"))
+    scene = hm.Scene(name="rotor bench", parts=parts, connections=connections)
+    for station in POSITIONS:
+        scene = scene.with_effect(hm.ViscousDrag(coefficient=p["drag"]), at=station, name=f"drag_{station}")
+    return scene
+
+
+def _of(p: Mapping[str, float], part: str) -> dict[str, float]:
+    """Parameters of one part, by the names of its fields."""
+    return {name.removeprefix(f"{part}_"): value for name, value in p.items() if name.startswith(f"{part}_")}
+
+
+def _blows(record: str) -> dict[str, FloatArray]:
+    """Force in each direction at the samples of a record [N]."""
+    if record != "bump":
+        return {}
+    times = sample_times(record)
+    return {d: np.where((times >= t) & (times <= t + BLOW_TIME), BLOW * np.sin(np.pi * (times - t) / BLOW_TIME), 0.0) for d, t in HAMMER.items()}
+
+
+def sample_times(record: str) -> FloatArray:
+    """Times of the samples of a record [s]."""
+    return SAMPLE_TIME * np.arange(round(REFERENCES[record][0][-1] / SAMPLE_TIME))
+
+
+def start(record: str, scene: hm.Scene | None = None) -> dict[str, Any]:
+    """What ``hm.simulate`` needs to begin like a record: at rest or all at 180 rad/s, untwisted, in the static deflection.
+
+    scene : the bench, if it is not the nominal one
+    """
+    still = (build(record) if scene is None else scene).replacing({"drive.characteristic": hm.TorqueHistory(times=(0.0, 1.0), torques=(0.0, 0.0))})
+    at_rest = rotor_point(still, 0.0).angles
+    lateral = {body.name for body in still.network().bodies if body.lateral}
+    return {"initial_speed": REFERENCES[record][1][0], "initial": {name: at_rest[name] for name in at_rest if name in lateral}}
+
+
+# -- the drive -----------------------------------------------------------------------------------------
+
+
+def held_control(record: str, free: hm.Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The line turning under its sampled controller: angles and speeds of the drive end, one more than samples, and torques.
+
+    Torsion alone, linear, from sample to sample by the matrix exponential: exact but for what whirl takes from the
+    spin (1e-4 to 4e-4 rad over a record).
+
+    free : the bench with a drive that does nothing
+    """
+    network = free.without("gravity").network()  # the weight of an eccentric rotor is no constant stiffness
+    spins = [k for k, body in enumerate(network.bodies) if not body.lateral]
+    zero = dict.fromkeys((body.name for body in network.bodies), 0.0)
+    system = LineMatrices(network).at(zero, zero)
+    mass, damping, stiffness = (matrix[np.ix_(spins, spins)] for matrix in (system.mass, system.damping, system.stiffness))
+    n, drive = len(spins), [system.names[k] for k in spins].index("bearing_1")
+    rates = np.zeros((2 * n + 1, 2 * n + 1))
+    rates[:n, n : 2 * n] = np.eye(n)
+    rates[n : 2 * n, : 2 * n] = -np.linalg.solve(mass, np.hstack([stiffness, damping]))
+    rates[n : 2 * n, 2 * n] = np.linalg.solve(mass, np.eye(n)[drive])
+    moved = expm(rates * SAMPLE_TIME)
+    state = np.zeros(2 * n + 1)
+    state[n : 2 * n] = REFERENCES[record][1][0]
+    references = np.interp(sample_times(record), *REFERENCES[record])
+    torques, states = np.zeros(len(references)), np.zeros((len(references) + 1, 2))
+    for k, reference in enumerate(references.tolist()):
+        states[k] = state[drive], state[n + drive]
+        torques[k] = state[2 * n] = min(max(GAIN * (reference - state[n + drive]), -TORQUE_LIMIT), TORQUE_LIMIT)
+        state = moved @ state
+    states[-1] = state[drive], state[n + drive]
+    return states[:, 0], states[:, 1], torques
+
+
+def _controller(record: str, free: hm.Scene) -> HeldSpeedControl:
+    """The controller, with its reference corrected for sampling and holding; a change is a steep line centred on its sample."""
+    angles, speeds, _ = held_control(record, free)
+    times = sample_times(record)
+    mean = np.interp(times, *REFERENCES[record]) - speeds[:-1] + np.diff(angles) / SAMPLE_TIME
+    half, rise = 0.5 * EDGE * SAMPLE_TIME, 0.5 * np.diff(speeds)
+    points = np.column_stack((times + half, times + SAMPLE_TIME - half)).ravel()
+    values = np.column_stack((mean - rise, mean + rise)).ravel()
+    return HeldSpeedControl(gain=GAIN, torque_limit=TORQUE_LIMIT, times=tuple(points), references=tuple(values))
+
+
+def _measured_spin(record: str, free: hm.Scene, times: Sequence[float], angles: Sequence[float]) -> hm.IdealSpeedMotor:
+    """The measured angle without the steps of its encoder: that of the controlled line, and a spline through the rest.
+
+    The rest is smooth, because the twist and the fast part of the speed are in the controlled line: knots 0.02 s apart
+    leave 1/sqrt(12) of a step times about sqrt(1/80).
+    """
+    at, measured = np.asarray(times, float), np.asarray(angles, float)
+    turned, _, _ = held_control(record, free)
+    own = SAMPLE_TIME * np.arange(len(turned))
+    rest = measured - np.interp(at, own, turned)
+    weights = np.where(at == 0.0, 1e3, 1.0)  # the angle is zero at t = 0
+    knots = np.linspace(at[0], at[-1], max(2, round((at[-1] - at[0]) / KNOT_TIME) + 1))
+    smooth = make_lsq_spline(at, rest, np.concatenate(([knots[0]] * 3, knots, [knots[-1]] * 3)), k=3, w=weights)
+    return hm.IdealSpeedMotor(motion=hm.AngleTable(times=tuple(own), angles=tuple(turned + smooth(np.clip(own, at[0], at[-1])))))
+
+
+SOLVER = hm.Trapezoidal(step=SAMPLE_TIME / 16.0, newton_tolerance=1e-7)
+"""Meets every sample."""
