@@ -14,7 +14,7 @@ from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.time_tables import for_tables
 from hdrive_mbs.engine.assembly import Assembly, assemble
 from hdrive_mbs.engine.simulation import RawRun, run
-from hdrive_mbs.engine.solvers import DormandPrince, Solver
+from hdrive_mbs.engine.solvers import Solver
 from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.moment import Moment
@@ -108,8 +108,9 @@ def simulate(
     """Integrate a scene from t = 0.
 
     duration : s
-    solver : DormandPrince() by default; its longest step is shortened where a table over time (TableTorque,
-        SpeedTable) has closer points.  For a short pulse in a function of your own set max_step yourself
+    solver : by default DormandPrince(), for rotor lines Trapezoidal with a step for 1e-3 (analysis/default_solver.py).
+        Its longest step is shortened where a table over time (TableTorque, SpeedTable) has closer points; for a short
+        pulse in a function of your own set max_step yourself
     initial_speed : motor speed at t = 0 [rad/s]; every other place turns by its ideal ratio
     initial : values at t = 0 by channel name (``"load.angle"``, ``"motor.speed"``, a state), true sense
     sample_step : record no more often than this [s]; 0 records every step of the solver
@@ -127,11 +128,14 @@ def simulate(
         raise ParameterError(f"duration = {duration:g} s: must be greater than 0 s.")
     if sample_step < 0.0:
         raise ParameterError(f"sample_step = {sample_step:g} s: must be at least 0 s (0 records every step of the solver).")
-    solver = solver if solver is not None else DormandPrince()
+    network = scene.network()
+    if solver is None:
+        from hdrive_mbs.analysis.default_solver import default_solver  # which itself runs the turning part alone
+
+        solver = default_solver(network, duration, _number("initial_speed", initial_speed, "rad/s"))
     if not isinstance(solver, Solver):
         raise ParameterError(f"solver = {solver!r}: must be a Solver, for instance DormandPrince() or RungeKutta4(step=1e-5).")
     solver = for_tables(solver, scene, duration)
-    network = scene.network()
     assembly = assemble(network, lowering=lowering)
     starts = initial_values(network, initial_speed, initial or {})
 

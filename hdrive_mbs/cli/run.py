@@ -23,7 +23,7 @@ def run(
     effect: Effects = None,
     duration: Annotated[float, typer.Option(help="Simulated time [s].")] = 1.0,
     initial_speed: Annotated[float, typer.Option(help="Motor speed at t = 0 [rad/s].")] = 0.0,
-    solver: Annotated[str, typer.Option(help="dormand-prince, runge-kutta-4, trapezoidal or generalized-alpha.")] = "dormand-prince",
+    solver: Annotated[str, typer.Option(help="automatic, dormand-prince, runge-kutta-4, trapezoidal or generalized-alpha.")] = "automatic",
     tolerance: Annotated[float, typer.Option(help="Relative tolerance of dormand-prince.")] = 1e-8,
     step: Annotated[float, typer.Option(help="Step of the other solvers [s].")] = 1e-4,
     estimate_error: Annotated[bool, typer.Option("--estimate-error", help="Run again finer and state the error.")] = False,
@@ -39,7 +39,7 @@ def run(
 
     chosen = open_scene(scene, set_ or (), effect or ())
     response = simulate(
-        chosen, duration, solver=_solver(solver, tolerance, step), initial_speed=initial_speed, estimate_error=estimate_error
+        chosen, duration, solver=_solver(solver, tolerance, step, chosen.network().is_lateral), initial_speed=initial_speed, estimate_error=estimate_error
     )
     folder = out or Path("results") / re.sub(r"\W+", "_", chosen.name)
     result = response.save(folder / "response.npz")
@@ -71,7 +71,11 @@ def run(
         raise typer.Exit(130)
 
 
-def _solver(name: str, tolerance: float, step: float) -> Solver:
+def _solver(name: str, tolerance: float, step: float, is_rotor_line: bool) -> Solver | None:
+    if name == "automatic":
+        if is_rotor_line:
+            return None
+        name = "dormand-prince"
     makers: dict[str, Callable[[], Solver]] = {
         "dormand-prince": lambda: solvers.DormandPrince(relative_tolerance=tolerance, absolute_tolerance=tolerance * 1e-2),
         "runge-kutta-4": lambda: solvers.RungeKutta4(step=step),
@@ -79,7 +83,7 @@ def _solver(name: str, tolerance: float, step: float) -> Solver:
         "generalized-alpha": lambda: solvers.GeneralizedAlpha(step=step),
     }
     if name not in makers:
-        raise ParameterError(f"--solver {name!r}: must be one of {', '.join(makers)}.")
+        raise ParameterError(f"--solver {name!r}: must be one of automatic, {', '.join(makers)}.")
     return makers[name]()
 
 

@@ -17,7 +17,7 @@ from hdrive_mbs.quantities import parameter
 class ActuatorLag(Effect):
     """First-order lag of the torque of a motor.
 
-    y' = (M - y)/t,  tau = y
+    tau = y,  dy/dt = (M - y)/t
 
     with the torque M of the motor's characteristic; y starts at zero.  The channel ``<motor>.torque`` stays M (what
     a drive reports), ``<effect>.torque`` is y.  A time constant of zero delivers M at once.

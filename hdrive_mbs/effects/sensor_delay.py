@@ -15,7 +15,7 @@ from hdrive_mbs.quantities import parameter
 class SensorDelay(MemorySensorEffect):
     """Dead time of a sensor (transmission, sampling), as an all-pass of second order.
 
-    seen = x - y_2,  t y_1' = y_2,  t y_2' = 12 (x - y_1) - 6 y_2
+    seen = x - y_2,  t dy_1/dt = y_2,  t dy_2/dt = 12 (x - y_1) - 6 y_2
 
     which has the transfer function (1 - t s/2 + t^2 s^2/12)/(1 + t s/2 + t^2 s^2/12): amplitudes as they are, the
     phase of a delay t to within (w t)^5/720 rad.  A steady ramp comes exactly t late.

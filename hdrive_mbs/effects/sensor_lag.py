@@ -15,7 +15,7 @@ from hdrive_mbs.quantities import parameter
 class SensorLag(MemorySensorEffect):
     """A filter of first order in front of a sensor.
 
-    y' = (x - y)/t,  seen = y
+    seen = y,  dy/dt = (x - y)/t
 
     Source: low-pass of first order; its cut-off frequency is 1/t.  Leaves out that it starts at y = 0 whatever x is
     then, and filters of higher order.  A time constant of zero changes nothing.

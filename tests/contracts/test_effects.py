@@ -164,7 +164,7 @@ EXAMPLES = {
         Example(TorqueRipple(amplitude=0.3, relative=0.1, order=6.0), "motor", ("amplitude", "relative")),
         Example(EccentricLoad(mass=4.0, radius=0.3, start_angle=0.5), "load", ("mass",)),
         Example(DahlFriction(coulomb=5.0, presliding=2e-3, exponent=1.5), "load", ("coulomb",)),
-        Example(IwanHysteresis(torque_limit=8.0, slip_twist=5e-4), "gear", ("torque_limit",)),
+        Example(IwanHysteresis(torque_limit=8.0, slip_twist=1e-3, rounding=0.5), "gear", ("torque_limit",)),
         Example(StiffnessAsymmetry(asymmetry=0.3), "gear", ("asymmetry",)),
         Example(LostMotion(width=2e-4, film=2e-5), "gear", ("width",)),
         Example(FilmBacklash(backlash=0.01, film=1e-3, film_damping=0.02), "coupling", ("backlash",)),
@@ -468,12 +468,12 @@ def test_it_says_its_kind_its_family_and_where_a_search_begins(example: Example)
     assert kind.acts_on in PLACES
     assert kind.family.isidentifier()
     assert kind.family == kind.family.lower()
-    varied = {
-        name: metadata["quantity"] for name, _, metadata in example.effect.fields() if getattr(metadata.get("quantity"), "typical", 0)
-    }
+    known = {name: metadata.get("quantity") for name, _, metadata in example.effect.fields()}
+    varied = {name: quantity for name, quantity in known.items() if quantity is not None and quantity.typical is not None}
     if kind in effects_of_package():
         needed = {field.name for field in dataclasses.fields(kind) if field.default is dataclasses.MISSING}
-        assert needed | set(example.size) <= set(varied)
+        assert needed <= set(varied)
+        assert set(example.size) & set(varied)
     for name, quantity in varied.items():
         for value in quantity.typical:
             quantity.check(name, value)
@@ -534,7 +534,7 @@ def test_its_size_can_be_zero_but_only_negative_where_that_means_something(examp
         if quantity.low != 0.0:
             assert quantity.low < 0.0 < quantity.high
             example.effect.replacing(**{name: -value})
-            with pytest.raises(ParameterError, match=f"at least {quantity.low:g}"):
+            with pytest.raises(ParameterError, match=f"at least {quantity.low}"):
                 example.effect.replacing(**{name: 2.0 * quantity.low})
             continue
         bad = (*value[:-1], -value[-1]) if isinstance(value, tuple) else -value
@@ -574,7 +574,7 @@ def test_it_is_compared_by_value_and_set_by_path(example: Example) -> None:
     for name in example.size:
         value = getattr(example.effect, name)
         half = tuple(0.5 * item for item in value) if isinstance(value, tuple) else 0.5 * value
-        if name == "coulomb":  # stays below the breakaway torque
+        if name == "coulomb" and hasattr(example.effect, "breakaway"):  # stays below the breakaway torque
             assert half < example.effect.breakaway
         elif name == "breakaway":
             half = 2.0 * value

@@ -69,7 +69,10 @@ def detectability(changed: Planted, *, tries: int = 6, records: tuple[str, ...] 
     square = jacobian.T @ jacobian
     for _ in range(tries):
         step = np.linalg.solve(square * (1.0 + damping * np.eye(b.size)) + np.eye(b.size), jacobian.T @ rest - b)
-        step *= min(1.0, _TRUST / float(np.max(np.abs(step))))
+        longest = float(np.max(np.abs(step)))
+        if longest < 1e-9:
+            break
+        step *= min(1.0, _TRUST / longest)
         try:
             left = target - whitened(_bench(b + step), records)
         except UnstableError:
