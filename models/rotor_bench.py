@@ -100,7 +100,8 @@ PATHS: dict[str, tuple[str, ...]] = {
     **{f"support_stiffness_{d}": tuple(f"{name}.housing.stiffness_{d}" for name in BEARINGS) for d in "xy"},
     "support_damping": tuple(f"{name}.housing.damping_{d}" for name in BEARINGS for d in "xy"),
 }
-"""Where each parameter sits in the scene, for ``scene.replacing``."""
+"""Where each parameter sits in the scene, for ``scene.replacing``.  What of the controller depends on parameters (see
+HeldSpeedControl) stays as it was built; a deviation from there is fed back all the same."""
 
 GAIN, TORQUE_LIMIT, SAMPLE_TIME = 4.0, 170.0, 1.0 / 4000.0
 """Speed control at the drive end [N m s/rad, N m, s]: it reads speed and reference and holds its torque for a sample."""
@@ -127,10 +128,11 @@ CHANNELS: dict[str, str] = {
     **{f"h{k}_a{d}": f"bearing_{k}.housing.{d}_acceleration" for k in (1, 2) for d in "xy"},
     **{f"hammer_{d}": f"hammer.force_{d}" for d in "xy"},
 }
-"""Column of a record -> channel of the scene.  The torque is what is held *from* a sample on: compare it in the middle
-of the hold.  With a measured spin there is no torque to compare."""
+"""Column of a record -> channel of the scene.  With a measured spin there is no torque to compare."""
 
 INPUTS = ("hammer_x", "hammer_y")
+HELD = ("motor_torque", *INPUTS)
+"""Columns of what is held from a sample on: compare them with the scene half a sample later."""
 OFFSET_FREE = ("r1_x", "r1_y", "r2_x", "r2_y")
 """Columns whose offset is unknown and another one in each record."""
 
@@ -158,6 +160,9 @@ KNOT_TIME = 0.02
 def noise() -> dict[str, float]:
     """Standard deviation of each column: white noise and rounding (a uniform error of one step)."""
     return {name: math.hypot(sigma, RESOLUTION.get(name, 0.0) / math.sqrt(12.0)) for name, sigma in NOISE.items()}
+
+
+NO_TORQUE = hm.TorqueHistory(times=(0.0, 1.0), torques=(0.0, 0.0))
 
 
 # -- the scene -----------------------------------------------------------------------------------------
@@ -198,17 +203,18 @@ def build(
 
     Raises ParameterError for an unknown record or parameter.
     """
+    free = undriven(record, hammer=hammer, **parameters)
+    return free.replacing({"drive.characteristic": _controller(record, free) if spin is None else _measured_spin(record, free, *spin)})
+
+
+def undriven(record: str, *, hammer: Mapping[str, Sequence[float]] | None = None, **parameters: float) -> hm.Scene:
+    """The bench with a drive that does nothing."""
     if record not in REFERENCES:
         raise hm.ParameterError(f"record = {record!r}: must be one of {', '.join(REFERENCES)}.")
     for name in parameters:
         if name not in NOMINAL:
             raise hm.ParameterError(f"No parameter {name!r}. The rotor bench has: {', '.join(NOMINAL)}.")
-    free = _line(NOMINAL | parameters, _blows(record) if hammer is None else hammer)
-    return free.replacing({"drive.characteristic": _controller(record, free) if spin is None else _measured_spin(record, free, *spin)})
-
-
-def _line(p: Mapping[str, float], blows: Mapping[str, Sequence[float]]) -> hm.Scene:
-    """The bench with a drive that does nothing."""
+    p, blows = NOMINAL | parameters, _blows(record) if hammer is None else hammer
     housing = hm.Housing(
         mass=p["housing_mass"],
         stiffness_x=p["support_stiffness_x"],
@@ -245,7 +251,7 @@ def _line(p: Mapping[str, float], blows: Mapping[str, Sequence[float]]) -> hm.Sc
             damping=p["shaft_damping"],
         )
         chain += [section, right]
-    parts |= {"drive": hm.DriveTorque(characteristic=hm.TorqueHistory(times=(0.0, 1.0), torques=(0.0, 0.0))), "gravity": hm.Gravity()}
+    parts |= {"drive": hm.DriveTorque(characteristic=NO_TORQUE), "gravity": hm.Gravity()}
     connections = [tuple(chain)]
     if blows:
         times = SAMPLE_TIME * np.arange(max(map(len, blows.values())))
@@ -268,7 +274,9 @@ def _blows(record: str) -> dict[str, FloatArray]:
     if record != "bump":
         return {}
     times = sample_times(record)
-    return {d: np.where((times >= t) & (times <= t + BLOW_TIME), BLOW * np.sin(np.pi * (times - t) / BLOW_TIME), 0.0) for d, t in HAMMER.items()}
+    return {
+        d: np.where((times >= t) & (times <= t + BLOW_TIME), BLOW * np.sin(np.pi * (times - t) / BLOW_TIME), 0.0) for d, t in HAMMER.items()
+    }
 
 
 def sample_times(record: str) -> FloatArray:
@@ -281,7 +289,7 @@ def start(record: str, scene: hm.Scene | None = None) -> dict[str, Any]:
 
     scene : the bench, if it is not the nominal one
     """
-    still = (build(record) if scene is None else scene).replacing({"drive.characteristic": hm.TorqueHistory(times=(0.0, 1.0), torques=(0.0, 0.0))})
+    still = undriven(record) if scene is None else scene.replacing({"drive.characteristic": NO_TORQUE})
     at_rest = rotor_point(still, 0.0).angles
     lateral = {body.name for body in still.network().bodies if body.lateral}
     return {"initial_speed": REFERENCES[record][1][0], "initial": {name: at_rest[name] for name in at_rest if name in lateral}}
@@ -296,7 +304,7 @@ def held_control(record: str, free: hm.Scene) -> tuple[FloatArray, FloatArray, F
     Torsion alone, linear, from sample to sample by the matrix exponential: exact but for what whirl takes from the
     spin (1e-4 to 4e-4 rad over a record).
 
-    free : the bench with a drive that does nothing
+    free : the bench without its drive, see ``undriven``
     """
     network = free.without("gravity").network()  # the weight of an eccentric rotor is no constant stiffness
     spins = [k for k, body in enumerate(network.bodies) if not body.lateral]

@@ -18,6 +18,7 @@ import numpy as np
 from exudyn import itemInterface as item  # noqa: N813
 
 from hdrive_mbs.engine.guard import check_connector, check_coupling, check_scalar
+from hdrive_mbs.engine.matrix import compact
 from hdrive_mbs.engine.nodes import Nodes
 from hdrive_mbs.engine.records import CoupledRecord, ScalarRecord, make_records, oriented
 from hdrive_mbs.engine.symbolic import LARGEST_LAW, SYMBOLIC_VECTOR_LIMIT, connector_function, generic_function, written_out
@@ -134,9 +135,9 @@ class _Builder:
         self.mbs.AddObject(
             item.ObjectGenericODE2(
                 nodeNumbers=self.nodes.unique(names),
-                massMatrix=mass,
-                stiffnessMatrix=stiffness,
-                dampingMatrix=damping,
+                massMatrix=compact(mass),
+                stiffnessMatrix=compact(stiffness),
+                dampingMatrix=compact(damping),
                 forceVector=[0.0] * len(names),
             )
         )
@@ -266,9 +267,9 @@ class _Builder:
         self.mbs.AddObject(
             item.ObjectGenericODE2(
                 nodeNumbers=self.nodes.unique(names),
-                massMatrix=zero,
-                stiffnessMatrix=zero,
-                dampingMatrix=zero,
+                massMatrix=compact(zero),
+                stiffnessMatrix=compact(zero),
+                dampingMatrix=compact(zero),
                 forceVector=[0.0] * n,
                 forceUserFunction=function,
             )

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from exudyn import itemInterface as item  # noqa: N813
 
+from hdrive_mbs.engine.matrix import compact
 from hdrive_mbs.engine.records import CoupledRecord, renamed
 from hdrive_mbs.engine.symbolic import SYMBOLIC_VECTOR_LIMIT
 from hdrive_mbs.network.matrix_element import MatrixElement
@@ -160,9 +161,9 @@ class Nodes:
         self.mbs.AddObject(
             item.ObjectGenericODE2(
                 nodeNumbers=[self.at[name] for name in names],
-                massMatrix=mass,
-                stiffnessMatrix=zero,
-                dampingMatrix=zero,
+                massMatrix=compact(mass),
+                stiffnessMatrix=compact(zero),
+                dampingMatrix=compact(zero),
                 forceVector=[0.0] * len(mass),
             )
         )

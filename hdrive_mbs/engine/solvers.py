@@ -12,6 +12,10 @@ from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.quantities import Described, parameter
 
 
+CONTRACTIVITY = 0.05
+"""Newton's method takes a new Jacobian where an iteration gains less than this factor: a rotor that speeds up changes it."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Solver(Described):
     """A time integrator."""
@@ -105,6 +109,7 @@ class Implicit(FixedStep):
         self.steps(settings, duration)
         newton = settings.timeIntegration.newton
         newton.useModifiedNewton = True
+        newton.modifiedNewtonContractivity = CONTRACTIVITY
         newton.relativeTolerance = self.newton_tolerance
         newton.numericalDifferentiation.forODE2 = True
 

@@ -50,12 +50,13 @@ PROFILES: dict[str, SpeedProfile] = {
     "table": SpeedTable(times=(0.1, 0.3, 0.35, 1.0, 1.7), speeds=(5.0, 5.0, 100.0, 80.0, -10.0)),
     "table of two points": SpeedTable(times=(-1.0, 1.0), speeds=(0.0, 50.0)),
     "table of many points": SpeedTable(times=tuple(np.linspace(0.0, 2.0, 40)), speeds=tuple(50.0 * np.sin(np.linspace(0.0, 9.0, 40)))),
+    "angles": hm.AngleTable(times=(-0.2, 0.1, 0.3, 0.35, 1.0, 1.7), angles=(1.0, 2.0, 5.0, 7.0, 3.0, -4.0)),
     "function": AngleFunction(function=lambda t: 10.0 * t - 3.0 * np.sin(4.0 * t)),
 }
 
 
 def corners(profile: SpeedProfile) -> list[float]:
-    if isinstance(profile, SpeedTable):
+    if isinstance(profile, (SpeedTable, hm.AngleTable)):
         return list(profile.times)
     return [0.0, profile.duration] if isinstance(profile, SpeedRamp) else []
 

@@ -66,6 +66,8 @@ LAWS: tuple[Described, ...] = (
     ServoMotor(torque_limit=5.0, current_lag=1e-3, proportional_gain=0.5, integral_gain=3.0, reference=ConstantSpeed(value=100.0)),
     TorqueSpeedTable(speeds=(-10.0, 0.0, 150.0), torques=(5.0, 4.0, 0.0), extrapolate=True),
     IdealSpeedMotor(motion=SpeedTable(times=(0.0, 1.0, 2.0), speeds=(0.0, 10.0, 10.0))),
+    IdealSpeedMotor(motion=hm.AngleTable(times=(0.0, 1.0, 2.0), angles=(0.0, 5.0, 15.0))),
+    hm.TorqueHistory(times=(0.0, 1.0, 2.0), torques=(0.0, 3.0, -1.0), held=True),
 )
 
 
@@ -122,6 +124,27 @@ EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.QuadraticDrag(coefficient=0.01), "load"),
     (hm.TorqueRipple(amplitude=0.01, relative=0.02, order=4.0, phase=0.2), "motor"),
     (hm.ViscousDrag(coefficient=0.2), "gear.flexspline"),
+    (hm.DahlFriction(coulomb=1.0, presliding=1e-3, exponent=0.8), "load"),
+    (hm.IwanHysteresis(torque_limit=2.0, slip_twist=1e-3), "gear"),
+    (hm.StiffnessAsymmetry(asymmetry=-0.2), "gear"),
+    (hm.LostMotion(width=1e-4, film=1e-5), "gear"),
+    (hm.FilmBacklash(backlash=1e-3, film=1e-4, film_damping=0.1), "input_shaft"),
+    (hm.StiffnessVariation(variation=0.1, order=2.0, follows="flexspline"), "gear"),
+    (hm.Cogging(amplitude=0.1, order=24.0, second_amplitude=0.02), "motor"),
+    (hm.HarmonicKinematicError(amplitude=1e-4, third_amplitude=1e-5), "gear"),
+    (hm.ActuatorLag(time_constant=2e-3), "motor"),
+    (hm.SupplySag(sag=0.01, torque_limit=9.0), "motor"),
+    (hm.MotorScale(error=-0.1), "motor"),
+    (hm.HiddenMode(inertia=0.1, natural_frequency=100.0), "load"),
+    (hm.FlexibleInertia(share=0.2, natural_frequency=100.0), "load"),
+    (hm.SeriesCompliance(compliance=1e-5), "output_shaft"),
+    (hm.ThermalDrift(viscous_change=-0.1, time_constant=10.0), "load"),
+    (hm.SensorGain(error=0.1), "encoder"),
+    (hm.SensorOffset(offset=-0.1), "encoder"),
+    (hm.SensorLag(time_constant=1e-3), "encoder"),
+    (hm.SensorDelay(delay=1e-3), "encoder"),
+    (hm.EncoderEccentricity(amplitude=1e-4, phase=0.3), "encoder"),
+    (hm.SensorQuantisation(resolution=1e-3), "encoder"),
 )
 
 
@@ -191,7 +214,8 @@ def holding(law: Described) -> hm.Scene:
 @functools.cache
 def example_scenes() -> dict[str, hm.Scene]:
     found = {type(law).__name__: holding(law) for law in LAWS}
-    found |= {type(effect).__name__: train().with_effect(effect, at=at, name="the_effect") for effect, at in EFFECTS}
+    read = hm.Scene(name="read", parts={**train().parts, "encoder": Sensor(quantity="load.angle")}, connections=train().connections)
+    found |= {type(effect).__name__: read.with_effect(effect, at=at, name="the_effect") for effect, at in EFFECTS}
     found |= {f"gear {k}": train().replacing(gear=drive.replacing(damping=2.0)) for k, drive in enumerate(gears())}
     controlled = dict(train(motor=CommandedMotor(torque_limit=5.0, current_lag=1e-3)).parts)
     controlled["control"] = SpeedController(
@@ -201,6 +225,8 @@ def example_scenes() -> dict[str, hm.Scene]:
     chain = ("motor", "input_shaft", "gear", "output_shaft", "load")
     found["supported"] = supported_scene()
     found |= {f"{type(law).__name__} {k}": rotor_scene(law) for k, law in enumerate(BEARINGS)}
+    hammer, line = hm.LateralForce(times=(0.0, 1e-3, 2e-3), forces_y=(0.0, 9.0, 0.0), held=True), rotor_scene(LINEAR)
+    found["pushed"] = hm.Scene(name="pushed", parts={**line.parts, "hammer": hammer}, connections=[*line.connections, ("hammer", "rotor")])
     found["controlled"] = hm.Scene(name="controlled", parts=controlled, connections=[chain], notes="a 'quoted' \"note\"\nof two lines, °µ")
     rigid = {"disc": hm.Inertia(inertia=0.1, viscous=0.2), "joint": RigidCoupling(inertia=0.01), "end": hm.Inertia(inertia=1.0)}
     found["rigid"] = hm.Scene(name="rigid", parts=rigid, connections=[("disc", "joint", "end")])

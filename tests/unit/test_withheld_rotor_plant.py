@@ -214,7 +214,7 @@ def test_energy_is_kept_without_damping_with_unbalance_skew_bow_keyway_hardening
     exchanged = 0.5 * made.polar.sum() * (spins.max() ** 2 - spins.min() ** 2)
     assert exchanged > 0.05
     assert lateral > 0.01
-    assert np.ptp(values) < 1e-4 * exchanged
+    assert np.ptp(values) < 1e-6 * exchanged
 
 
 def test_a_free_disc_nutates_forward_with_the_ratio_of_its_inertias() -> None:
@@ -251,8 +251,9 @@ def test_rotating_damping_takes_from_the_spin_what_it_gives_to_the_whirl_and_hea
 def test_the_supports_carry_the_weight_of_the_bench() -> None:
     made = machine(NOMINAL)
     rest = static_deflection(made, no_causes())
+    # the search for rest stops at 1e-7 m/s^2, 1e-8 of the weight
     carried = -sum(made.support_stiffness[b, 1] * rest[HOUSING + 2 * b + 1] for b in range(2))
-    assert carried == pytest.approx((made.mass.sum() + made.housing_mass.sum()) * made.gravity, rel=1e-9)
+    assert carried == pytest.approx((made.mass.sum() + made.housing_mass.sum()) * made.gravity, rel=2e-8)
 
 
 def test_a_ring_falls_into_its_clearance() -> None:
@@ -290,12 +291,15 @@ def test_every_cause_acts_at_its_place(site: tuple[str, str]) -> None:
         assert changed
         assert all(name.startswith(place) for name in changed)
         return
-    states = [moving(seed) for seed in range(4)]
+    states = [moving(seed) for seed in range(12)]
     for state in states:
         state[[4, 5]] *= 4.0  # wide enough for a rub
         state[[12, 13]] *= 4.0
         state[MORE + PASS] = 0.1
-    change = [slopes(bench.machine(), bench.causes, state) - slopes(plain.machine(), no_causes(), state) for state in states]
+    change = [
+        slopes(bench.machine(), bench.causes, state, time=0.1 + 0.03 * k) - slopes(plain.machine(), no_causes(), state, time=0.1 + 0.03 * k)
+        for k, state in enumerate(states)
+    ]
     assert max(float(np.max(np.abs(part[COORDINATES:MORE]))) for part in change) > 1e-3
     assert np.all(np.isfinite(change))
 

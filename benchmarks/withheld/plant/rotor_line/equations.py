@@ -174,11 +174,15 @@ def slope(t, y, torque, hx, hy, M, C, out, s, w, f, r):
             w[k + 2] += o * th
             w[k + 3] -= o * ps
     cracked = 0.0
-    if C.crack[3] != 0.0:
-        k = int(C.crack[1])
-        cracked = _crack(C.crack, M.length, M.bending, 0.5 * (q[SPIN + k] + q[SPIN + k + 1]), s)
     for k in range(3):
-        _section(k, M.length[k], M.bending[k], M.shaft_damping, s, w, f)
+        if C.crack[3] != 0.0 and int(C.crack[1]) == k:
+            j = 4 * k + 4
+            s0, s1, s2, s3 = s[j], s[j + 1], s[j + 2], s[j + 3]
+            cracked = _crack(C.crack, M.length, M.bending, 0.5 * (q[SPIN + k] + q[SPIN + k + 1]), s)
+            _section(k, M.length[k], M.bending[k], M.shaft_damping, s, w, f)
+            s[j], s[j + 1], s[j + 2], s[j + 3] = s0, s1, s2, s3  # the next section begins at the station itself
+        else:
+            _section(k, M.length[k], M.bending[k], M.shaft_damping, s, w, f)
     T = out[n + SPIN : n + SPIN + 4]  # torques first, accelerations later
     for i in range(4):
         T[i] = -M.drag[i] * v[SPIN + i] - C.windage[i] * v[SPIN + i] * abs(v[SPIN + i]) - C.seal[i] * math.tanh(v[SPIN + i])

@@ -1,0 +1,476 @@
+"""Laws of the drive effects against closed forms, statics, and scenes in which the effect is built from parts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import hdrive_mbs as hm
+from hdrive_mbs.effects.dead_zone import contact_share, dead_zone
+from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import ParameterError, PlaceError
+from hdrive_mbs.expression import Value, gradient
+
+TIGHT = hm.DormandPrince(relative_tolerance=1e-10, absolute_tolerance=1e-12, max_step=1e-3)
+
+
+def wheel(inertia: float = 0.2, torque: object = 0.0) -> hm.Scene:
+    """One inertia, driven by a motor with a torque law."""
+    law = torque if callable(torque) else lambda time, speed: torque + 0.0 * time
+    return hm.Scene(name="wheel", parts={"wheel": hm.Motor(inertia=inertia, characteristic=law)}, connections=[])
+
+
+def spring_to_ground(stiffness: float = 1e3, damping: float = 0.0, inertia: float = 0.1) -> hm.Scene:
+    """A disc on a shaft whose other end is held."""
+    parts = {"disc": hm.Inertia(inertia=inertia), "shaft": hm.Shaft(stiffness=stiffness, damping=damping)}
+    return hm.Scene(name="spring", parts=parts, connections=[("disc", "shaft", "ground")])
+
+
+def drive(stiffness: object = lambda twist: 1e4 * twist, *, damping: float = 0.0, motor: object = lambda speed: 0.0 * speed) -> hm.Scene:
+    """Motor, gear 50:1, load: no shafts, no losses."""
+    parts = {
+        "motor": hm.Motor(inertia=1e-3, characteristic=motor),
+        "gear": hm.HarmonicDrive(ratio=50.0, stiffness=stiffness, damping=damping),
+        "load": hm.Inertia(inertia=0.5),
+    }
+    return hm.Scene(name="drive", parts=parts, connections=[("motor", "gear", "load")])
+
+
+# -- friction and hysteresis ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("exponent", [0.5, 1.0, 2.0])
+def test_dahl_friction_builds_up_as_its_equation_integrates(exponent: float) -> None:
+    law = hm.DahlFriction(coulomb=5.0, presliding=2e-3, exponent=exponent)
+    path = np.linspace(0.0, 3e-3, 40)
+    turned = solve_ivp(
+        lambda t, y: [law.state_rate("z", t, 0.0, 1.0, {"z": y[0]})], (0.0, path[-1]), [0.0], t_eval=path, rtol=1e-10, atol=1e-12
+    ).y[0]
+    # du/ds = (1 - u)^n with s = angle/x_p:  1 - exp(-s) for n = 1, else  1 - (1 + (n - 1) s)^(1/(1 - n)), full at s = 1/(1 - n) if n < 1
+    s = path / 2e-3
+    n = exponent
+    expected = 1.0 - np.exp(-s) if n == 1.0 else 1.0 - np.maximum(1.0 + (n - 1.0) * s, 0.0) ** (1.0 / (1.0 - n))
+    np.testing.assert_allclose(turned, expected, atol=1e-6)
+
+
+def test_dahl_friction_slides_at_its_torque_and_turns_over_after_a_reversal() -> None:
+    response = hm.simulate(
+        wheel(1e3).with_effect(hm.DahlFriction(coulomb=5.0, presliding=1e-3), at="wheel", name="it"), 0.1, solver=TIGHT, initial_speed=1.0
+    )
+    # 100 presliding angles; the heavy wheel goes on turning
+    assert response["it.torque"].values[-1] == pytest.approx(-5.0, rel=1e-9)
+    back = hm.simulate(
+        wheel(1e3).with_effect(hm.DahlFriction(coulomb=5.0, presliding=1e-3), at="wheel", name="it"),
+        0.1,
+        solver=TIGHT,
+        initial={"wheel.speed": -1.0, "it.z": 1.0},
+    )
+    # dz/ds = -(1 + z) from z = 1 on
+    turned = -back["wheel.angle"].values / 1e-3
+    np.testing.assert_allclose(back["it.z"].values, 2.0 * np.exp(-turned) - 1.0, atol=1e-6)
+
+
+def test_iwan_hysteresis_follows_its_parabola_and_slips_at_its_limit() -> None:
+    law = hm.IwanHysteresis(torque_limit=8.0, slip_twist=1e-3, rounding=0.0)
+    path = np.arange(0, 1025) / 1024.0  # of the slip twist; powers of two reach every limit exactly
+    state, torque = dict.fromkeys(law.states(), 0.0), [0.0]
+    for step in np.diff(path) * 1e-3:
+        rates = {name: law.state_rate(name, 0.0, 0.0, step, state) for name in state}
+        state = {name: state[name] + float(rates[name]) for name in state}
+        torque.append(float(law.torque(0.0, 0.0, step, state)))
+    # straight pieces around the parabola: the corners at s = 1/8, 3/8, 5/8, 7/8 lie 1/64 above it
+    away = np.array(torque) / 8.0 - (2.0 * path - path**2)
+    assert away.min() + 1e-12 >= 0.0
+    assert away.max() == pytest.approx(1.0 / 64.0, rel=1e-6)
+    np.testing.assert_allclose(np.array(torque)[path >= 0.875], 8.0, rtol=1e-12)
+
+
+# -- changed laws -----------------------------------------------------------------------------------------
+
+
+def straight_law(twist: Value, rate: Value) -> Value:
+    return 200.0 * twist + 0.5 * rate
+
+
+def test_asymmetry_scales_the_elastic_torque_and_leaves_the_damping() -> None:
+    torque = hm.StiffnessAsymmetry(asymmetry=0.3, smoothing_twist=1e-5).changed(straight_law)
+    # tanh(100) = 1
+    assert torque(1e-3, 0.0) == pytest.approx(0.2 * 1.3, rel=1e-12)
+    assert torque(-1e-3, 0.0) == pytest.approx(-0.2 * 0.7, rel=1e-12)
+    for twist in (-1e-3, 0.0, 1e-6, 1e-3):
+        assert torque(twist, 4.0) - torque(twist, 0.0) == pytest.approx(2.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("asymmetry", [-0.8, 0.8])
+def test_the_largest_asymmetry_still_lets_a_law_rise(asymmetry: float) -> None:
+    torque = hm.StiffnessAsymmetry(asymmetry=asymmetry, smoothing_twist=1e-5).changed(straight_law)
+    slope = gradient(lambda twist: torque(twist, 0.0))(np.linspace(-1e-4, 1e-4, 4001))
+    # 1 + a (tanh u + u sech^2 u), whose bracket is at most 1.1997 (at u = 1.2)
+    assert slope.min() > 0.0
+    assert slope.min() == pytest.approx(200.0 * (1.0 - 0.8 * 1.19968), rel=1e-3)
+
+
+def test_an_asymmetric_spring_swings_with_two_half_periods_and_keeps_its_energy() -> None:
+    scene = spring_to_ground().with_effect(hm.StiffnessAsymmetry(asymmetry=0.4, smoothing_twist=1e-7), at="shaft")
+    response = hm.simulate(scene, 0.3, solver=TIGHT, initial={"disc.speed": 1.0})
+    # half periods pi sqrt(J/k) with k (1 + a) and k (1 - a)
+    period = math.pi * math.sqrt(0.1 / 1e3) * (1.0 / math.sqrt(1.4) + 1.0 / math.sqrt(0.6))
+    angle = response["disc.angle"]
+    rising = [t for t, before, after in zip(response.times[1:], angle.values[:-1], angle.values[1:], strict=True) if before < 0.0 <= after]
+    assert np.diff(rising) == pytest.approx(period, abs=2e-3)
+    assert rising[-1] / len(rising) == pytest.approx(period, rel=1e-2)
+    assert np.max(np.abs(response["disc.speed"].values)) == pytest.approx(1.0, rel=1e-6)
+
+
+def test_a_rounded_dead_zone_lies_within_half_its_rounding_of_the_sharp_one() -> None:
+    twist = np.linspace(-0.03, 0.03, 6001)
+    sharp, smooth = dead_zone(twist, 0.02, 0.0), dead_zone(twist, 0.02, 1e-3)
+    np.testing.assert_allclose(sharp, np.sign(twist) * np.maximum(np.abs(twist) - 0.01, 0.0), atol=1e-17)
+    # at an edge the sharp zone is 0 and the rounded one (e + h' - h')/2 = e/2 to the order of e^2/b
+    assert np.max(np.abs(smooth - sharp)) == pytest.approx(0.5e-3, rel=0.05)
+    np.testing.assert_allclose(smooth, -smooth[::-1], atol=1e-17)
+
+
+@pytest.mark.parametrize("rounding", [0.0, 1e-3])
+def test_the_share_of_contact_is_the_slope_of_the_dead_zone(rounding: float) -> None:
+    twist = np.array([-0.02, -0.0101, -0.004, 0.0, 0.003, 0.0099, 0.012, 0.03])
+    slope = gradient(lambda x: dead_zone(x, 0.02, rounding))(twist) + 0.0 * twist
+    np.testing.assert_allclose(contact_share(twist, 0.02, rounding), slope, atol=1e-12)
+
+
+def test_lost_motion_takes_the_torque_and_leaves_the_damping_in_its_gap() -> None:
+    torque = hm.LostMotion(width=0.02).changed(straight_law)
+    assert torque(0.009, 3.0) == pytest.approx(1.5)
+    assert torque(0.012, 3.0) == pytest.approx(0.4 + 1.5)
+    assert torque(-0.012, 3.0) == pytest.approx(-0.4 + 1.5)
+
+
+def test_lost_motion_adds_to_that_of_the_gear() -> None:
+    law = hm.PiecewiseLinearStiffness(lost_motion=3e-4, stiffness_1=3e4, stiffness_2=6e4, stiffness_3=1e5, torque_1=20.0, torque_2=90.0)
+    wider = law.replacing(lost_motion=5e-4)
+    twists = np.linspace(-4e-3, 4e-3, 201)
+    changed = drive(law).with_effect(hm.LostMotion(width=2e-4), at="gear").network().connection("gear")
+    plain = drive(wider).network().connection("gear")
+    moment = drive().network().moment(0.0, {}, {}, {})
+    np.testing.assert_allclose(changed.torque(moment, twists, 0.0), plain.torque(moment, twists, 0.0), atol=1e-9)
+
+
+def test_film_backlash_damps_by_the_film_inside_and_by_the_law_in_contact() -> None:
+    torque = hm.FilmBacklash(backlash=0.02, film=1e-5, film_damping=0.1).changed(straight_law)
+    # e/h = 1e-3: what is left of the other part is (e/h)^2/2
+    assert torque(0.0, 3.0) == pytest.approx(0.3, abs=1e-5)
+    assert torque(0.05, 3.0) == pytest.approx(200.0 * 0.04 + 1.5, abs=1e-5)
+    assert torque(-0.05, 3.0) == pytest.approx(-200.0 * 0.04 + 1.5, abs=1e-5)
+    # at the edge itself half of both
+    assert torque(0.01, 3.0) - torque(0.01, 0.0) == pytest.approx(0.5 * 0.3 + 0.5 * 1.5, rel=1e-3)
+
+
+@pytest.mark.parametrize("effect", [hm.LostMotion(width=0.0, film=1e-3), hm.FilmBacklash(backlash=0.0, film=1e-3)])
+def test_a_gap_of_zero_is_the_law_itself(effect: hm.LawEffect) -> None:
+    assert effect.changed(straight_law) is straight_law
+
+
+@pytest.mark.parametrize(
+    "effect", [hm.LostMotion(width=0.01, film=1e-3), hm.FilmBacklash(backlash=0.01, film=1e-3), hm.StiffnessAsymmetry(asymmetry=0.5)]
+)
+def test_changed_laws_make_no_energy_without_damping(effect: Effect) -> None:
+    response = hm.simulate(spring_to_ground().with_effect(effect, at="shaft"), 0.3, solver=TIGHT, initial={"disc.speed": 2.0})
+    balance = hm.energy_balance(response)
+    np.testing.assert_allclose(balance.total, balance.total[0], rtol=1e-6)
+    assert np.ptp(balance.kinetic) > 0.9 * balance.total[0]
+
+
+# -- stiffness over the angle ------------------------------------------------------------------------------
+
+
+def energy_over(scene: hm.Scene, effect: hm.StiffnessVariation, potential: object) -> np.ndarray:
+    """Kinetic energy and (1 + r) U of a free train [J]."""
+    response = hm.simulate(
+        scene.with_effect(effect, at="gear", name="it"), 0.2, solver=TIGHT, initial={"motor.speed": 40.0, "load.speed": 0.4}
+    )
+    kinetic = 0.5 * 1e-3 * response["motor.speed"].values ** 2 + 0.5 * 0.5 * response["load.speed"].values ** 2
+    return kinetic + (1.0 + response["it.share"].values) * potential(response["gear.twist"].values)
+
+
+@pytest.mark.parametrize("follows", ["wave_generator", "flexspline"])
+def test_a_stiffness_that_varies_with_the_angle_makes_no_energy(follows: str) -> None:
+    effect = hm.StiffnessVariation(variation=0.5, order=2.0 if follows == "wave_generator" else 100.0, phase=0.3, follows=follows)
+    for law, potential in (
+        (lambda twist: 1e4 * twist, lambda x: 0.5e4 * x**2),
+        (lambda twist: 1e4 * twist + 1e9 * twist**3, lambda x: 0.5e4 * x**2 + 0.25e9 * x**4),
+    ):
+        total = energy_over(drive(law), effect, potential)
+        np.testing.assert_allclose(total, total[0], rtol=1e-8)
+    # it is the reaction on the flange that keeps the balance: the torque of the gear alone does not
+    alone = energy_over(drive(), effect, lambda x: 0.5e4 * x**2 / (1.0 + effect.variation))
+    assert np.ptp(alone) > 1e-4 * alone[0]
+
+
+def test_a_stiffness_that_varies_keeps_its_reaction_with_lost_motion_and_asymmetry() -> None:
+    # whatever changes the law later, the reaction is that of the whole potential: energy of a run without losses stays
+    scene = drive().with_effect(hm.StiffnessVariation(variation=0.3), at="gear", name="it")
+    scene = scene.with_effect(hm.LostMotion(width=1e-3, film=1e-3), at="gear")
+    response = hm.simulate(scene, 0.2, solver=TIGHT, initial={"motor.speed": 40.0, "load.speed": 0.4})
+    kinetic = 0.5 * 1e-3 * response["motor.speed"].values ** 2 + 0.5 * 0.5 * response["load.speed"].values ** 2
+    inside = dead_zone(response["gear.twist"].values, 1e-3, 1e-3)
+    grid = np.linspace(-0.05, 0.05, 200001)
+    torque = 1e4 * dead_zone(grid, 1e-3, 1e-3)
+    area = np.concatenate([[0.0], np.cumsum(0.5 * (torque[1:] + torque[:-1]) * np.diff(grid))])
+    potential = np.interp(response["gear.twist"].values, grid, area - np.interp(0.0, grid, area))
+    total = kinetic + (1.0 + response["it.share"].values) * potential
+    assert np.max(np.abs(inside)) > 1e-3
+    # four Gauss points on a rounded corner: the reaction is good to a per cent of itself
+    np.testing.assert_allclose(total, total[0], rtol=1e-3)
+
+
+def test_stiffness_at_twice_a_mode_makes_it_grow_as_mathieu_says() -> None:
+    inertia, stiffness, variation = 0.5, 1e4, 0.1
+    frequency = math.sqrt(stiffness / inertia)
+    # two periods of stiffness per turn of the wave generator: at its speed w the stiffness swings with 2 w = 2 f
+    motor = hm.IdealSpeedMotor(motion=hm.SpeedRamp(start=frequency, end=frequency, duration=1.0))
+    scene = drive(motor=motor).with_effect(hm.StiffnessVariation(variation=variation, order=2.0), at="gear")
+    duration = 1.5
+    response = hm.simulate(scene, duration, solver=TIGHT, initial={"motor.speed": frequency, "load.speed": -frequency / 50.0 - 1e-3})
+    twist, rate = response["gear.twist"].values, response["gear.twist_rate"].values
+    size = np.hypot(twist * frequency, rate)
+    late = response.times > 0.5 * duration
+    growth = np.polyfit(response.times[late], np.log(size[late]), 1)[0]
+    # principal parametric resonance: growth rate A f/4, to first order in A (Nayfeh, Mook, Nonlinear Oscillations, 5.3)
+    assert growth == pytest.approx(variation * frequency / 4.0, rel=0.03)
+
+
+def test_a_stiffness_variation_of_a_shaft_is_refused() -> None:
+    with pytest.raises(PlaceError, match="flanges wave_generator, circular_spline"):
+        spring_to_ground().with_effect(hm.StiffnessVariation(variation=0.1), at="shaft")
+    with pytest.raises(ParameterError, match="must be 'wave_generator' or 'flexspline'"):
+        hm.StiffnessVariation(variation=0.1, follows="output")
+
+
+# -- orders ----------------------------------------------------------------------------------------------------
+
+
+def test_cogging_is_the_sum_of_its_harmonics_and_gives_its_energy_back() -> None:
+    effect = hm.Cogging(amplitude=0.3, order=6.0, phase=0.4, second_amplitude=0.2, second_phase=1.0, third_amplitude=0.1)
+    response = hm.simulate(wheel(0.02).with_effect(effect, at="wheel", name="it"), 1.0, solver=TIGHT, initial_speed=8.0)
+    angle = response["wheel.angle"].values
+    expected = 0.3 * np.sin(6.0 * angle + 0.4) + 0.2 * np.sin(12.0 * angle + 1.0) + 0.1 * np.sin(18.0 * angle)
+    np.testing.assert_allclose(response["it.torque"].values, expected, atol=1e-12)
+    balance = hm.energy_balance(response)
+    np.testing.assert_allclose(balance.total, balance.total[0], rtol=1e-8)
+    assert np.ptp(balance.kinetic) > 0.05 * balance.total[0]
+
+
+def test_cogging_of_a_body_that_turns_backwards_counts_its_true_angle() -> None:
+    scene = drive().with_effect(hm.Cogging(amplitude=2.0, order=3.0, phase=0.5), at="load", name="it")
+    response = hm.simulate(scene, 0.05, solver=TIGHT, initial_speed=60.0)
+    np.testing.assert_allclose(response["it.torque"].values, 2.0 * np.sin(3.0 * response["load.angle"].values + 0.5), atol=1e-12)
+    balance = hm.energy_balance(response)
+    np.testing.assert_allclose(balance.total, balance.total[0], rtol=1e-8)
+
+
+def test_a_kinematic_error_with_harmonics_is_the_sum_of_three() -> None:
+    orders = ((1e-4, 2.0, 0.3), (5e-5, 4.0, -1.0), (2e-5, 6.0, 2.0))
+    whole = hm.HarmonicKinematicError(
+        amplitude=1e-4, order=2.0, phase=0.3, second_amplitude=5e-5, second_phase=-1.0, third_amplitude=2e-5, third_phase=2.0
+    )
+    apart = drive()
+    for amplitude, order, phase in orders:
+        apart = apart.with_effect(hm.KinematicError(amplitude=amplitude, order=order, phase=phase), at="gear")
+    networks = [scene.network() for scene in (drive().with_effect(whole, at="gear"), apart)]
+    for angle in (0.0, 0.7, 4.0):
+        given = [network.moment(0.0, {"motor": angle, "load": 0.01}, {"motor": 9.0, "load": 0.2}, {}) for network in networks]
+        first, second = (network.torques(moment) for network, moment in zip(networks, given, strict=True))
+        for name in first:
+            assert first[name] == pytest.approx(second[name], rel=1e-12)
+
+
+# -- motors ------------------------------------------------------------------------------------------------------
+
+
+def test_a_lagging_motor_delivers_a_step_exponentially_and_reports_it_whole() -> None:
+    response = hm.simulate(wheel(0.2, 4.0).with_effect(hm.ActuatorLag(time_constant=0.02), at="wheel", name="it"), 0.2, solver=TIGHT)
+    t = response.times
+    np.testing.assert_allclose(response["wheel.torque"].values, 4.0)
+    np.testing.assert_allclose(response["it.torque"].values, 4.0 * (1.0 - np.exp(-t / 0.02)), atol=1e-9)
+    np.testing.assert_allclose(response["wheel.speed"].values, 20.0 * (t - 0.02 * (1.0 - np.exp(-t / 0.02))), atol=1e-9)
+
+
+def test_a_sagging_supply_lets_the_motor_creep_up_to_its_last_speed() -> None:
+    scene = wheel(0.2, 8.0).with_effect(hm.SupplySag(sag=0.5, torque_limit=5.0), at="wheel", name="it")
+    response = hm.simulate(scene, 2.0, solver=TIGHT)
+    # below its command from the start:  J dw/dt = T_L - s w
+    np.testing.assert_allclose(response["wheel.speed"].values, 10.0 * (1.0 - np.exp(-0.5 * response.times / 0.2)), atol=1e-8)
+    law = hm.SupplySag(sag=0.5, torque_limit=5.0)
+    assert law.delivered(0.0, 4.0, -8.0) == -5.0  # braking: the supply does not give way
+    assert law.delivered(0.0, -4.0, -8.0) == -3.0
+    assert law.delivered(0.0, 40.0, 8.0) == 0.0
+    assert law.delivered(0.0, 4.0, 1.0) == 1.0
+
+
+def test_effects_of_a_motor_follow_one_another() -> None:
+    scene = wheel(0.2, 4.0).with_effect(hm.MotorScale(error=0.5), at="wheel", name="first")
+    scene = scene.with_effect(hm.SupplySag(sag=0.0, torque_limit=5.0), at="wheel", name="second")
+    response = hm.simulate(scene, 0.1, solver=TIGHT)
+    assert (response["first.torque"].values[0], response["second.torque"].values[0]) == (6.0, 5.0)
+    np.testing.assert_allclose(response["wheel.speed"].values, 25.0 * response.times, atol=1e-9)
+    other = (
+        wheel(0.2, 4.0).with_effect(hm.SupplySag(sag=0.0, torque_limit=5.0), at="wheel").with_effect(hm.MotorScale(error=0.5), at="wheel")
+    )
+    assert hm.simulate(other, 0.1, solver=TIGHT)["wheel.speed"].values[-1] == pytest.approx(3.0)
+
+
+def test_a_ripple_in_proportion_follows_what_the_motor_delivers() -> None:
+    scene = wheel(0.2, 4.0).with_effect(hm.MotorScale(error=1.0), at="wheel")
+    response = hm.simulate(scene.with_effect(hm.TorqueRipple(relative=0.1, order=3.0), at="wheel", name="ripple"), 1.0)
+    np.testing.assert_allclose(response["ripple.torque"].values, 0.8 * np.sin(3.0 * response["wheel.angle"].values), atol=1e-12)
+
+
+@pytest.mark.parametrize("effect", [hm.ActuatorLag(time_constant=0.1), hm.SupplySag(sag=0.1, torque_limit=1.0), hm.MotorScale(error=0.1)])
+def test_effects_of_a_motor_refuse_a_load_and_a_prescribed_motion(effect: Effect) -> None:
+    loaded = drive(motor=lambda speed: 1.0 + 0.0 * speed).replacing(load=hm.Load(inertia=0.5, torque=hm.ConstantTorque(value=1.0)))
+    with pytest.raises(PlaceError, match=r"needs a motor with a torque law, but 'load' is none\. Motors: motor\."):
+        loaded.with_effect(effect, at="load")
+    assert effect.places(loaded.network()) == ("motor",)
+    given = drive(motor=hm.IdealSpeedMotor(motion=hm.SpeedRamp(start=0.0, end=1.0, duration=1.0)))
+    with pytest.raises(PlaceError, match=r"Motors: none\."):
+        given.with_effect(effect, at="motor")
+
+
+# -- dynamics of their own ---------------------------------------------------------------------------------------
+
+
+def chain(first: float, second: float, stiffness: float, damping: float) -> hm.Scene:
+    """Two discs on a shaft, the first on a spring to the ground."""
+    parts = {
+        "disc": hm.Inertia(inertia=first),
+        "spring": hm.Shaft(stiffness=300.0, damping=0.2),
+        "link": hm.Shaft(stiffness=stiffness, damping=damping),
+        "second": hm.Inertia(inertia=second),
+    }
+    return hm.Scene(name="chain", parts=parts, connections=[("disc", "spring", "ground"), ("disc", "link", "second")])
+
+
+@pytest.mark.parametrize("shared", [False, True], ids=["attached", "share"])
+def test_a_hidden_mode_is_a_second_disc_on_a_shaft(shared: bool) -> None:
+    inertia, frequency, ratio = 0.04, 60.0, 0.05
+    stiffness, damping = inertia * frequency**2, 2.0 * ratio * inertia * frequency
+    kept = 0.1 - inertia if shared else 0.1
+    built = chain(kept, inertia, stiffness, damping)
+    effect = (
+        hm.FlexibleInertia(share=0.4, natural_frequency=frequency, damping_ratio=ratio)
+        if shared
+        else hm.HiddenMode(inertia=inertia, natural_frequency=frequency, damping_ratio=ratio)
+    )
+    hidden = spring_to_ground(300.0, 0.2, 0.1).with_effect(effect, at="disc", name="it")
+    start = {"disc.angle": 0.1, "second.angle": 0.1, "disc.speed": -1.0, "second.speed": -1.0}
+    plain = hm.simulate(built, 0.5, solver=TIGHT, initial=start)
+    response = hm.simulate(hidden, 0.5, solver=TIGHT, initial={"disc.angle": 0.1, "disc.speed": -1.0, "it.inertia_speed": -1.0})
+    times = np.linspace(0.0, 0.5, 301)
+    np.testing.assert_allclose(response.at("disc.angle", times), plain.at("disc.angle", times), atol=1e-8)
+    second = plain.at("second.angle", times) - plain.at("disc.angle", times)
+    np.testing.assert_allclose(response.at("it.deflection", times), second, atol=1e-8)
+    np.testing.assert_allclose(hm.modes(hidden).damped, hm.modes(built).damped, rtol=1e-9)
+    assert hm.energy_balance(response).energy_error < 1e-7
+
+
+def test_a_share_of_an_inertia_leaves_the_whole_as_it_was_in_slow_motion() -> None:
+    scene = wheel(0.2, lambda time, speed: 1.0 - np.exp(-time / 0.2) + 0.0 * speed)
+    rigid = hm.simulate(scene, 2.0, solver=TIGHT)
+    parted = hm.simulate(
+        scene.with_effect(hm.FlexibleInertia(share=0.6, natural_frequency=500.0, damping_ratio=0.5), at="wheel"), 2.0, solver=TIGHT
+    )
+    # the deflection follows the torque, of which 1/(0.2 s) is the fastest part: (1/(500 * 0.2))^2 = 1e-4 of the motion
+    assert parted["wheel.angle"].values[-1] == pytest.approx(rigid["wheel.angle"].values[-1], rel=1e-4)
+
+
+def test_a_share_of_a_rotor_with_lateral_motion_is_refused() -> None:
+    from models.two_rotor_line import build
+
+    effect = hm.FlexibleInertia(share=0.3, natural_frequency=100.0)
+    with pytest.raises(PlaceError, match=r"FlexibleInertia changes the inertia of 'rotor_1'"):
+        build().with_effect(effect, at="rotor_1")
+    assert effect.places(build().network()) == ()
+    assert "rotor_1" in hm.HiddenMode.places(build().network())
+
+
+def test_compliance_in_series_adds_to_the_twist_of_any_law() -> None:
+    compliance = 2e-4
+
+    def law(twist: Value) -> Value:
+        return 1e3 * twist + 1e6 * twist**3
+
+    gear = hm.HarmonicDrive(ratio=50.0, stiffness=law, damping=5.0)
+    held = hm.Inertia(inertia=0.01, viscous=2.0)
+    parts = {"motor": hm.Motor(inertia=1e-3, characteristic=lambda time, speed: 0.2 + 0.0 * time, viscous=0.05), "gear": gear, "arm": held}
+    scene = hm.Scene(
+        name="pushed", parts={**parts, "stop": hm.Shaft(stiffness=1e6)}, connections=[("motor", "gear", "arm", "stop", "ground")]
+    )
+    response = hm.simulate(scene.with_effect(hm.SeriesCompliance(compliance=compliance), at="gear", name="it"), 2.0, solver=TIGHT)
+    torque, twist = response["gear.torque"].values[-1], response["gear.twist"].values[-1]
+    assert torque == pytest.approx(50.0 * 0.2, rel=1e-6)  # at rest the gear carries u times the motor's torque
+    assert response["it.deflection"].values[-1] == pytest.approx(compliance * torque, rel=1e-6)
+    assert law(twist - compliance * torque) == pytest.approx(torque, rel=1e-6)
+
+
+def test_compliance_in_series_with_a_shaft_lowers_its_frequency_as_springs_in_series() -> None:
+    scene = spring_to_ground(1e3, 0.0, 0.1).with_effect(hm.SeriesCompliance(compliance=1e-3, relaxation_time=1e-6), at="shaft")
+    # 1/k' = 1/k + C: half as stiff; the damper of 1e-6 s gives a damping ratio of about 70 * 1e-6/4
+    found = hm.modes(scene)
+    assert found.natural[0] == pytest.approx(math.sqrt(500.0 / 0.1), rel=1e-6)
+    assert found.damping_ratio[0] == pytest.approx(math.sqrt(500.0 / 0.1) * 1e-6 / 4.0, rel=1e-3)
+
+
+def test_compliance_in_series_is_a_light_disc_between_two_shafts() -> None:
+    # the same with the mass that was left out: 1e-7 kg m^2 between the two springs
+    first, second = {"stiffness": 1e3, "damping": 0.5}, {"stiffness": 2e3, "damping": 2e3 * 1e-3}
+    parts = {"disc": hm.Inertia(inertia=0.1), "first": hm.Shaft(**first), "middle": hm.Inertia(inertia=1e-7), "second": hm.Shaft(**second)}
+    built = hm.Scene(name="two", parts=parts, connections=[("disc", "first", "middle", "second", "ground")])
+    hidden = spring_to_ground(1e3, 0.5, 0.1).with_effect(hm.SeriesCompliance(compliance=5e-4, relaxation_time=1e-3), at="shaft", name="it")
+    start = {"disc.speed": 1.0}
+    stiff = hm.DormandPrince(relative_tolerance=1e-9, absolute_tolerance=1e-12)
+    plain, response = hm.simulate(built, 0.1, solver=stiff, initial=start), hm.simulate(hidden, 0.1, solver=TIGHT, initial=start)
+    times = np.linspace(0.0, 0.1, 101)
+    # the light disc carries 1e-7 * (70 rad/s)^2 = 5e-4 N m/rad against 3e3 of the springs, and settles in 1e-7/2.5 s at the start
+    np.testing.assert_allclose(response.at("disc.angle", times), plain.at("disc.angle", times), atol=1e-6 * 0.01)
+    middle = plain.at("middle.angle", times[1:])
+    np.testing.assert_allclose(response.at("it.deflection", times[1:]), middle, atol=1e-5 * np.max(np.abs(middle)))
+
+
+def test_hysteresis_in_line_with_a_compliance_sees_its_own_twist() -> None:
+    scene = spring_to_ground(1e3, 0.0, 0.1).with_effect(hm.BoucWenHysteresis(torque_limit=2.0, yield_twist=1e-3), at="shaft", name="loop")
+    scene = scene.with_effect(hm.SeriesCompliance(compliance=5e-4), at="shaft", name="soft")
+    response = hm.simulate(scene, 0.1, solver=TIGHT, initial={"disc.speed": 1.0})
+    inside = response["shaft.twist"].values - response["soft.deflection"].values
+    # on first loading  dz/dx = (1 - z)/x_y  with n = 1, b = 1/2:  z = 1 - exp(-x/x_y) of the twist inside
+    rising = response.times < 0.01
+    assert np.all(np.diff(inside[rising]) > 0.0)
+    np.testing.assert_allclose(response["loop.z"].values[rising], 1.0 - np.exp(-inside[rising] / 1e-3), atol=1e-7)
+    assert hm.energy_balance(response).energy_error < 1e-6
+
+
+def test_a_second_compliance_at_a_connection_is_refused() -> None:
+    once = spring_to_ground().with_effect(hm.SeriesCompliance(compliance=1e-4), at="shaft")
+    with pytest.raises(PlaceError, match="sum of both compliances"):
+        once.with_effect(hm.SeriesCompliance(compliance=1e-4), at="shaft").network()
+
+
+# -- time ----------------------------------------------------------------------------------------------------------
+
+
+def test_drag_that_grows_as_a_machine_warms_slows_it_as_the_integral_says() -> None:
+    scene = wheel(0.2).with_effect(hm.ThermalDrift(viscous_change=0.5, time_constant=0.7), at="wheel")
+    response = hm.simulate(scene, 2.0, solver=TIGHT, initial_speed=10.0)
+    t = response.times
+    # J dw/dt = -c (1 - exp(-t/h)) w
+    expected = 10.0 * np.exp(-0.5 / 0.2 * (t - 0.7 * (1.0 - np.exp(-t / 0.7))))
+    np.testing.assert_allclose(response["wheel.speed"].values, expected, rtol=1e-7)
+
+
+def test_friction_that_fades_as_a_machine_warms_drives_against_that_of_the_model() -> None:
+    law = hm.ThermalDrift(friction_change=-3.0, time_constant=0.5, smoothing_speed=0.01)
+    assert law.torque(0.0, 0.0, 5.0) == 0.0
+    assert law.torque(0.5, 0.0, 5.0) == pytest.approx(3.0 * (1.0 - math.exp(-1.0)), rel=1e-12)
+    assert law.torque(50.0, 0.0, -5.0) == pytest.approx(-3.0, rel=1e-12)
