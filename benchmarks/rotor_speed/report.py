@@ -28,7 +28,9 @@ def _campbell(numbers: Mapping[str, Any], ross: Mapping[str, Any] | None) -> str
     rows = []
     for run in numbers["campbell"]:
         count, best = run["elements"], min(run["seconds"])
-        theirs = [item for item in ross["campbell"] if item["elements"] == count and len(item.get("errors", [0.0] * 6)) >= 6] if ross else []
+        theirs = (
+            [item for item in ross["campbell"] if item["elements"] == count and len(item.get("errors", [0.0] * 6)) >= 6] if ross else []
+        )
         fastest = min((min(item["seconds"]) for item in theirs), default=None)
         rows.append(_campbell_row("hdrive_mbs", run, "" if fastest is None else f"{fastest / best:.1f} x as fast as the fastest below"))
         rows += [_campbell_row(f"ROSS, {item['way']}", item, "") for item in theirs]

@@ -66,7 +66,8 @@ def rotor_point(scene: Scene, speed: float, *, lines: LineMatrices | None = None
     if float(np.linalg.norm(force)) > 1e-6 * scale:
         worst = names[int(np.argmax(np.abs(force)))]
         raise AnalysisError(
-            f"No static deflection of {scene.name!r} at {speed:g} rad/s: {float(np.max(np.abs(force))):.3g} N or N m stay unbalanced at {worst!r}. "
+            f"No static deflection of {scene.name!r} at {speed:g} rad/s: {float(np.max(np.abs(force))):.3g} N or N m stay unbalanced "
+            f"at {worst!r}. "
             "Something has to hold every place laterally there; give weight (a Gravity part) to bearings that need a load."
         )
     found, turning_speeds = state(q)
@@ -97,5 +98,5 @@ def _held_then_released(q: FloatArray, unbalanced: _Vector, slope: _Vector, scal
     """Equilibrium of a line that lies in its clearances: springs to the ground at every coordinate, then softer and softer ones."""
     for soft in scale / 1e-5 * 10.0 ** -np.arange(0.0, 14.0):
         held = soft * np.eye(len(q))
-        q, force = _balanced(q, lambda at: unbalanced(at) - held @ at, lambda at: slope(at) + held, TOLERANCE * scale)  # noqa: B023
+        q, _ = _balanced(q, lambda at: unbalanced(at) - held @ at, lambda at: slope(at) + held, TOLERANCE * scale)  # noqa: B023
     return _balanced(q, unbalanced, slope, TOLERANCE * scale)

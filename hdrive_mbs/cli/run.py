@@ -38,9 +38,8 @@ def run(
     from hdrive_mbs.plots import save_figure
 
     chosen = open_scene(scene, set_ or (), effect or ())
-    response = simulate(
-        chosen, duration, solver=_solver(solver, tolerance, step, chosen.network().is_lateral), initial_speed=initial_speed, estimate_error=estimate_error
-    )
+    taken = _solver(solver, tolerance, step, chosen.network().is_lateral)
+    response = simulate(chosen, duration, solver=taken, initial_speed=initial_speed, estimate_error=estimate_error)
     folder = out or Path("results") / re.sub(r"\W+", "_", chosen.name)
     result = response.save(folder / "response.npz")
     pictures = save_figure(draw(response, channels=plot or None), folder / "response")

@@ -11,7 +11,6 @@ import exudyn as exu
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.quantities import Described, parameter
 
-
 CONTRACTIVITY = 0.05
 """Newton's method takes a new Jacobian where an iteration gains less than this factor: a rotor that speeds up changes it."""
 

@@ -10,8 +10,8 @@ import numpy as np
 from hdrive_mbs.expression import Value
 from hdrive_mbs.motors.characteristic import MotorCharacteristic
 from hdrive_mbs.network.draft import Draft
-from hdrive_mbs.network.node import Node
 from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.node import Node
 from hdrive_mbs.quantities import parameter
 
 

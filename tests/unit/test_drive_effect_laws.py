@@ -204,9 +204,24 @@ def test_a_stiffness_that_varies_with_the_angle_makes_no_energy(follows: str) ->
     ):
         total = energy_over(drive(law), effect, potential)
         np.testing.assert_allclose(total, total[0], rtol=1e-8)
-    # it is the reaction on the flange that keeps the balance: the torque of the gear alone does not
-    alone = energy_over(drive(), effect, lambda x: 0.5e4 * x**2 / (1.0 + effect.variation))
-    assert np.ptp(alone) > 1e-4 * alone[0]
+
+
+def test_torques_of_a_varying_stiffness_are_the_slopes_of_its_potential() -> None:
+    network = drive().with_effect(hm.StiffnessVariation(variation=0.4, order=3.0, phase=0.3), at="gear").network()
+
+    def potential(motor: float, load: float) -> float:
+        # forward angles; the wave generator is the motor:  twist = motor/50 - load
+        return (1.0 + 0.4 * math.sin(3.0 * motor + 0.3)) * 0.5e4 * (motor / 50.0 - load) ** 2
+
+    motor, load, step = 0.8, -0.03, 1e-5
+    torques = network.torques(network.moment(0.0, {"motor": motor, "load": load}, {"motor": 0.0, "load": 0.0}, {}))
+    # central differences: error of the order of step^2 * 27 of the torque
+    on_motor = -(potential(motor + step, load) - potential(motor - step, load)) / (2.0 * step)
+    on_load = -(potential(motor, load + step) - potential(motor, load - step)) / (2.0 * step)
+    assert torques["motor"] == pytest.approx(on_motor, rel=1e-7)
+    assert torques["load"] == pytest.approx(on_load, rel=1e-7)
+    ideal = -torques["load"] / 50.0
+    assert abs(torques["motor"] - ideal) > 0.1 * abs(ideal)
 
 
 def test_a_stiffness_that_varies_keeps_its_reaction_with_lost_motion_and_asymmetry() -> None:
@@ -233,7 +248,7 @@ def test_stiffness_at_twice_a_mode_makes_it_grow_as_mathieu_says() -> None:
     motor = hm.IdealSpeedMotor(motion=hm.SpeedRamp(start=frequency, end=frequency, duration=1.0))
     scene = drive(motor=motor).with_effect(hm.StiffnessVariation(variation=variation, order=2.0), at="gear")
     duration = 1.5
-    response = hm.simulate(scene, duration, solver=TIGHT, initial={"motor.speed": frequency, "load.speed": -frequency / 50.0 - 1e-3})
+    response = hm.simulate(scene, duration, solver=TIGHT, initial={"load.speed": -frequency / 50.0 - 1e-3})
     twist, rate = response["gear.twist"].values, response["gear.twist_rate"].values
     size = np.hypot(twist * frequency, rate)
     late = response.times > 0.5 * duration
@@ -403,11 +418,9 @@ def test_compliance_in_series_adds_to_the_twist_of_any_law() -> None:
         return 1e3 * twist + 1e6 * twist**3
 
     gear = hm.HarmonicDrive(ratio=50.0, stiffness=law, damping=5.0)
-    held = hm.Inertia(inertia=0.01, viscous=2.0)
-    parts = {"motor": hm.Motor(inertia=1e-3, characteristic=lambda time, speed: 0.2 + 0.0 * time, viscous=0.05), "gear": gear, "arm": held}
-    scene = hm.Scene(
-        name="pushed", parts={**parts, "stop": hm.Shaft(stiffness=1e6)}, connections=[("motor", "gear", "arm", "stop", "ground")]
-    )
+    motor = hm.Motor(inertia=1e-3, characteristic=lambda time, speed: 0.2 + 0.0 * time, viscous=0.05)
+    parts = {"motor": motor, "gear": gear, "arm": hm.Inertia(inertia=0.01, viscous=2.0), "stop": hm.Shaft(stiffness=1e6)}
+    scene = hm.Scene(name="pushed", parts=parts, connections=[("motor", "gear", "arm", "stop", "ground")])
     response = hm.simulate(scene.with_effect(hm.SeriesCompliance(compliance=compliance), at="gear", name="it"), 2.0, solver=TIGHT)
     torque, twist = response["gear.torque"].values[-1], response["gear.twist"].values[-1]
     assert torque == pytest.approx(50.0 * 0.2, rel=1e-6)  # at rest the gear carries u times the motor's torque
@@ -419,24 +432,25 @@ def test_compliance_in_series_with_a_shaft_lowers_its_frequency_as_springs_in_se
     scene = spring_to_ground(1e3, 0.0, 0.1).with_effect(hm.SeriesCompliance(compliance=1e-3, relaxation_time=1e-6), at="shaft")
     # 1/k' = 1/k + C: half as stiff; the damper of 1e-6 s gives a damping ratio of about 70 * 1e-6/4
     found = hm.modes(scene)
-    assert found.natural[0] == pytest.approx(math.sqrt(500.0 / 0.1), rel=1e-6)
+    assert found.damped[0] == pytest.approx(math.sqrt(500.0 / 0.1), rel=1e-6)
     assert found.damping_ratio[0] == pytest.approx(math.sqrt(500.0 / 0.1) * 1e-6 / 4.0, rel=1e-3)
 
 
 def test_compliance_in_series_is_a_light_disc_between_two_shafts() -> None:
-    # the same with the mass that was left out: 1e-7 kg m^2 between the two springs
+    # the same with the mass that was left out: 1e-6 kg m^2 between the two springs
     first, second = {"stiffness": 1e3, "damping": 0.5}, {"stiffness": 2e3, "damping": 2e3 * 1e-3}
-    parts = {"disc": hm.Inertia(inertia=0.1), "first": hm.Shaft(**first), "middle": hm.Inertia(inertia=1e-7), "second": hm.Shaft(**second)}
+    parts = {"disc": hm.Inertia(inertia=0.1), "first": hm.Shaft(**first), "middle": hm.Inertia(inertia=1e-6), "second": hm.Shaft(**second)}
     built = hm.Scene(name="two", parts=parts, connections=[("disc", "first", "middle", "second", "ground")])
     hidden = spring_to_ground(1e3, 0.5, 0.1).with_effect(hm.SeriesCompliance(compliance=5e-4, relaxation_time=1e-3), at="shaft", name="it")
     start = {"disc.speed": 1.0}
     stiff = hm.DormandPrince(relative_tolerance=1e-9, absolute_tolerance=1e-12)
     plain, response = hm.simulate(built, 0.1, solver=stiff, initial=start), hm.simulate(hidden, 0.1, solver=TIGHT, initial=start)
     times = np.linspace(0.0, 0.1, 101)
-    # the light disc carries 1e-7 * (70 rad/s)^2 = 5e-4 N m/rad against 3e3 of the springs, and settles in 1e-7/2.5 s at the start
-    np.testing.assert_allclose(response.at("disc.angle", times), plain.at("disc.angle", times), atol=1e-6 * 0.01)
+    # the light disc takes 1e-6 * (80 rad/s)^2 = 6e-3 N m/rad of 3e3 of the springs: 2e-6, and settles in 1e-6/2.5 s at the start
+    size = np.max(np.abs(plain.at("disc.angle", times)))
+    np.testing.assert_allclose(response.at("disc.angle", times), plain.at("disc.angle", times), atol=1e-5 * size)
     middle = plain.at("middle.angle", times[1:])
-    np.testing.assert_allclose(response.at("it.deflection", times[1:]), middle, atol=1e-5 * np.max(np.abs(middle)))
+    np.testing.assert_allclose(response.at("it.deflection", times[1:]), middle, atol=1e-4 * np.max(np.abs(middle)))
 
 
 def test_hysteresis_in_line_with_a_compliance_sees_its_own_twist() -> None:

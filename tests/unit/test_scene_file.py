@@ -66,7 +66,6 @@ LAWS: tuple[Described, ...] = (
     ServoMotor(torque_limit=5.0, current_lag=1e-3, proportional_gain=0.5, integral_gain=3.0, reference=ConstantSpeed(value=100.0)),
     TorqueSpeedTable(speeds=(-10.0, 0.0, 150.0), torques=(5.0, 4.0, 0.0), extrapolate=True),
     IdealSpeedMotor(motion=SpeedTable(times=(0.0, 1.0, 2.0), speeds=(0.0, 10.0, 10.0))),
-    IdealSpeedMotor(motion=hm.AngleTable(times=(0.0, 1.0, 2.0), angles=(0.0, 5.0, 15.0))),
     hm.TorqueHistory(times=(0.0, 1.0, 2.0), torques=(0.0, 3.0, -1.0), held=True),
 )
 
@@ -226,7 +225,9 @@ def example_scenes() -> dict[str, hm.Scene]:
     found["supported"] = supported_scene()
     found |= {f"{type(law).__name__} {k}": rotor_scene(law) for k, law in enumerate(BEARINGS)}
     hammer, line = hm.LateralForce(times=(0.0, 1e-3, 2e-3), forces_y=(0.0, 9.0, 0.0), held=True), rotor_scene(LINEAR)
-    found["pushed"] = hm.Scene(name="pushed", parts={**line.parts, "hammer": hammer}, connections=[*line.connections, ("hammer", "rotor")])
+    drive = hm.DriveTorque(characteristic=IdealSpeedMotor(motion=hm.AngleTable(times=(0.0, 1.0, 2.0), angles=(0.0, 5.0, 15.0))))
+    pushed = {**line.parts, "hammer": hammer, "drive": drive}
+    found["pushed"] = hm.Scene(name="pushed", parts=pushed, connections=[*line.connections, ("hammer", "rotor")])
     found["controlled"] = hm.Scene(name="controlled", parts=controlled, connections=[chain], notes="a 'quoted' \"note\"\nof two lines, °µ")
     rigid = {"disc": hm.Inertia(inertia=0.1, viscous=0.2), "joint": RigidCoupling(inertia=0.01), "end": hm.Inertia(inertia=1.0)}
     found["rigid"] = hm.Scene(name="rigid", parts=rigid, connections=[("disc", "joint", "end")])

@@ -16,7 +16,7 @@ pytest.importorskip("numba", reason="the plant is compiled: install the extra 'b
 from benchmarks.withheld.case import Case
 from benchmarks.withheld.plant import rotor
 from benchmarks.withheld.plant.rotor_line import records as bench_records
-from benchmarks.withheld.plant.rotor_line.detectability import detectability
+from benchmarks.withheld.plant.rotor_line.detectability import detectability, linear, nominal, whitened
 from benchmarks.withheld.plant.rotor_line.equations import (
     AUX,
     BALL,
@@ -33,6 +33,7 @@ from benchmarks.withheld.plant.rotor_line.equations import (
     no_causes,
     slope,
 )
+from benchmarks.withheld.plant.rotor_line.finer_detail import with_finer_detail
 from benchmarks.withheld.plant.rotor_line.machine import NOMINAL, TOLERANCE, disturbed, machine
 from benchmarks.withheld.plant.rotor_line.planted import Planted, SensorFaults
 from benchmarks.withheld.plant.rotor_line.records import RECORDS, UnstableError, reference, run, static_deflection
@@ -106,7 +107,8 @@ def test_cases_of_the_other_maker_are_reproduced_to_their_noise(case: str) -> No
 # --- the integrator
 
 
-def test_a_hundred_times_finer_integration_changes_no_channel_by_a_hundredth_of_its_noise() -> None:
+def test_a_hundred_times_finer_integration_stays_below_a_twentieth_of_the_noise() -> None:
+    """With three contacts in the bump record, the hardest: a damper jumps in at each touch. Without contacts it is 1e-3 of the noise."""
     bench = Planted(values=dict(NOMINAL))
     sites = [("bearing_clearance", "bearing_2"), ("rub", "rotor_1"), ("looseness", "support_1")]
     rotor.plant(bench, sites, [0.7, 0.5, 0.8], [5, 6, 7])
@@ -116,7 +118,7 @@ def test_a_hundred_times_finer_integration_changes_no_channel_by_a_hundredth_of_
     assert fine.steps > coarse.steps
     for name, value in shown(coarse, SensorFaults()).items():
         _, noise, resolution = CHANNELS[name]
-        assert np.max(np.abs(value - shown(fine, SensorFaults())[name])) < 0.01 * max(noise, resolution), name
+        assert np.max(np.abs(value - shown(fine, SensorFaults())[name])) < 0.05 * max(noise, resolution), name
 
 
 def test_a_plant_that_leaves_its_range_says_so() -> None:
@@ -199,17 +201,17 @@ def lossless() -> Machine:
 
 
 def test_energy_is_kept_without_damping_with_unbalance_skew_bow_keyway_hardening_and_a_hidden_mass() -> None:
-    """Unbalance and bow 40 times the bench's, so that their reaction on the spin counts; torque off, hammer on, then compared."""
+    """Unbalance and bow 40 times the bench's, so that their reaction on the spin counts; the torque is off."""
     made, causes = lossless(), no_causes()
     causes.bearing[0, :2] = 3, 3e-5
     causes.bow[1] = 2e-4, -1e-4, 3e-4, 1e-4
     causes.bow[3] = -1e-4, 2e-4, 0.0, 5e-4
     causes.crack[:] = 0, 1, 0.3, 1e-6, 0.0, 0.4, 1.0
     causes.hidden[:] = 1, 1, 2.0, 2.0 * 400**2, 2.0 * 600**2, 0.0, 0.5
-    found = run(made, causes, "steps", gain=0.0, tolerance=2e-5)
-    values = np.array([energy(made, causes, state) for state in found.states[:2000:40]])
-    spins = found.states[:2000, COORDINATES + SPIN]
-    lateral = energy(made._replace(gravity=0.0), causes, np.concatenate([found.states[1900, :SPIN], np.zeros(STATES - SPIN)]))
+    found = run(made, causes, "steps", gain=0.0, tolerance=2e-5, samples=1600)
+    values = np.array([energy(made, causes, state) for state in found.states[::40]])
+    spins = found.states[:, COORDINATES + SPIN]
+    lateral = energy(made._replace(gravity=0.0), causes, np.concatenate([found.states[1500, :SPIN], np.zeros(STATES - SPIN)]))
     # energy goes to and fro between spin and bending; that exchange is the scale
     exchanged = 0.5 * made.polar.sum() * (spins.max() ** 2 - spins.min() ** 2)
     assert exchanged > 0.05
@@ -316,8 +318,8 @@ def test_the_y_probe_sees_the_runout_a_quarter_turn_after_the_x_probe() -> None:
 
 def test_tolerances_are_drawn_as_the_data_sheet_says() -> None:
     draws = [disturbed(np.random.default_rng(seed)) for seed in range(400)]
-    for name, nominal in NOMINAL.items():
-        logs = np.log([draw[name] / nominal for draw in draws]) if nominal else np.zeros(1)
+    for name, value in NOMINAL.items():
+        logs = np.log([draw[name] / value for draw in draws]) if value else np.zeros(1)
         if name in TOLERANCE:
             # the deviation of 400 draws scatters by 1/sqrt(800) = 3.5 %
             assert np.std(logs) == pytest.approx(TOLERANCE[name], rel=0.16), name
@@ -331,19 +333,39 @@ def test_tolerances_are_drawn_as_the_data_sheet_says() -> None:
 def test_detectability_of_nothing_is_nothing_and_of_a_tolerated_value_its_own_square() -> None:
     """On the bump record alone, which is quick; 6 deviations of Young's modulus cost 36 unless others take a part over."""
     values = dict(NOMINAL)
-    assert detectability(Planted(values=values), records=("bump",)) == (0.0, 0.0)
+    assert detectability(Planted(values=values), records=("bump",)) == (0.0, 0.0, 0.0)
     values["E"] *= math.exp(6 * TOLERANCE["E"])
-    visible, raw = detectability(Planted(values=values), records=("bump",), tries=20)
-    assert raw > 1e4
-    assert 0.0 < visible <= 37.0
+    found = detectability(Planted(values=values), records=("bump",))
+    assert found.raw > 1e4
+    assert 0.0 < found.refitted <= 36.0 * (1 + 1e-9)
 
 
 def test_a_stronger_cause_is_more_visible() -> None:
     found = [
-        detectability(rotor.plant(Planted(values=dict(NOMINAL)), [("probe_gain", "probe_r1_y")], [strength], [2]), records=("bump",))[0]
+        detectability(
+            rotor.plant(Planted(values=dict(NOMINAL)), [("probe_gain", "probe_r1_y")], [strength], [2]), records=("bump",)
+        ).refitted
         for strength in (0.0, 0.5, 1.0)
     ]
     assert 1.0 < found[0] < found[1] < found[2]
+
+
+def test_the_finer_detail_of_every_bench_stays_in_the_noise() -> None:
+    """On the bump record; each size alone is held to a few, so that the sum of all stays below what can be told (25)."""
+    base = nominal(("bump",))[0]
+    for seed in range(8):
+        bench = Planted(values=dict(NOMINAL))
+        with_finer_detail(np.random.default_rng(seed), bench)
+        assert 0.0 < linear(whitened(bench, ("bump",)) - base, records=("bump",)) < 25.0
+
+
+def test_a_change_beside_itself_is_nothing_and_beside_another_less_than_alone() -> None:
+    base = nominal(("bump",))[0]
+    sites = [("bearing_cubic_stiffness", "bearing_1"), ("bearing_cubic_stiffness", "bearing_2")]
+    first, second = (whitened(rotor.plant(Planted(values=dict(NOMINAL)), [site], [0.5], [3]), ("bump",)) - base for site in sites)
+    alone = linear(first, records=("bump",))
+    assert 0.0 < linear(first, second, records=("bump",)) < alone
+    assert linear(first, first, records=("bump",)) < 1e-4 * alone
 
 
 # --- cases
@@ -352,7 +374,7 @@ def test_a_stronger_cause_is_more_visible() -> None:
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """The detectability of a case takes a Jacobian over all records; it has tests of its own."""
-    monkeypatch.setattr(rotor, "_visible", lambda cause, strength, seed: 0.0)
+    monkeypatch.setattr(rotor, "_visible", lambda causes, strengths, seeds: {"each": [1e3] * len(causes)})
 
 
 def table(case: Case) -> dict[str, list[tuple[str, str, bool, int]]]:

@@ -104,10 +104,17 @@ def static_deflection(machine: Machine, causes: Causes) -> FloatArray:
 
 
 def run(
-    machine: Machine, causes: Causes, record: str, *, tolerance: float = TOLERANCE, rest: FloatArray | None = None, gain: float = GAIN
+    machine: Machine,
+    causes: Causes,
+    record: str,
+    *,
+    tolerance: float = TOLERANCE,
+    rest: FloatArray | None = None,
+    gain: float = GAIN,
+    samples: int | None = None,
 ) -> Run:
-    """Simulate one record from the static deflection."""
-    goal = reference(record)
+    """Simulate one record, or its first samples, from the static deflection."""
+    goal = reference(record)[:samples]
     force = hammer(record, goal.size)
     rest = static_deflection(machine, causes) if rest is None else rest
     speed = 180.0 if record == "steps" else 0.0
