@@ -116,12 +116,13 @@ def _check_prescribed(network: Network, speed: float) -> None:
             )
 
 
-def _moment(network: Network, speed: float, angles: FloatArray, states: FloatArray) -> Moment:
+def _moment(network: Network, speed: float | FloatArray, angles: FloatArray, states: FloatArray) -> Moment:
+    """The state of steady rotation; angles and states have a row each, of numbers or of trials at once."""
     bodies = network.bodies
     return network.moment(
         np.float64(0.0),
         {body.name: angle for body, angle in zip(bodies, angles, strict=True)},
-        {body.name: np.float64(body.sense * body.ratio * speed) for body in bodies},
+        {body.name: np.multiply(body.sense * body.ratio, speed) for body in bodies},
         {state.name: value for state, value in zip(network.states, states, strict=True)},
     )
 
@@ -144,16 +145,17 @@ def _balance(network: Network, speed: float, *, find_speed: bool = False) -> Ope
 
     balanced = [*free, held] if find_speed and not anchored else free
 
-    def split(x: FloatArray) -> tuple[float, FloatArray, FloatArray]:
-        angles = np.zeros(n)
+    def split(x: FloatArray) -> tuple[float | FloatArray, FloatArray, FloatArray]:
+        angles = np.zeros((n, *x.shape[1:]))
         angles[free] = x[: len(free)]
-        return (float(x[-1]), angles, x[len(free) : -1]) if find_speed else (speed, angles, x[len(free) :])
+        return (x[-1], angles, x[len(free) : -1]) if find_speed else (speed, angles, x[len(free) :])
 
     def residual(x: FloatArray) -> FloatArray:
+        """Of one x, or of one in each column."""
         at, angles, values = split(x)
         total = network.torques(_moment(network, at, angles, values))
-        rows = [float(total[bodies[k].name]) for k in balanced] + [float(total[state.name]) for state in states]
-        return np.array(rows)
+        rows = [total[bodies[k].name] for k in balanced] + [total[state.name] for state in states]
+        return np.array([np.broadcast_to(np.asarray(row, float), x.shape[1:]) for row in rows]).reshape(len(rows), *x.shape[1:])
 
     best: tuple[float, FloatArray] | None = None
     starts = [_stretched(network, free, 0.0), *_static_guess(network, free, speed), *(_stretched(network, free, size) for size in SIZES)]
@@ -165,7 +167,8 @@ def _balance(network: Network, speed: float, *, find_speed: bool = False) -> Ope
         if error < 1e-9:
             break
     assert best is not None
-    speed, angles, values = split(best[1])
+    found, angles, values = split(best[1])
+    speed = float(found)
     moment = _moment(network, speed, angles, values)
     torques = {c.name: float(c.value(moment)) for c in _connections(network)}
     scale = max([abs(v) for v in torques.values()] + [1e-3])
@@ -242,14 +245,7 @@ def _newton(function: Callable[[FloatArray], FloatArray], x: FloatArray, iterati
     for _ in range(iterations):
         if error < 1e-11:
             break
-        jacobian = np.empty((len(value), len(x)))
-        for k in range(len(x)):
-            h = 1e-7 * max(abs(x[k]), 1e-2)
-            up, down = x.copy(), x.copy()
-            up[k] += h
-            down[k] -= h
-            jacobian[:, k] = (function(up) - function(down)) / (2.0 * h)
-        step = np.linalg.lstsq(jacobian, -value, rcond=1e-14)[0]
+        step = np.linalg.lstsq(_jacobian(function, x), -value, rcond=1e-14)[0]
         for _halving in range(30):
             trial = x + step
             new = function(trial)
@@ -261,6 +257,20 @@ def _newton(function: Callable[[FloatArray], FloatArray], x: FloatArray, iterati
             break
         x, value, error = trial, new, size
     return x, error
+
+
+def _jacobian(function: Callable[[FloatArray], FloatArray], x: FloatArray) -> FloatArray:
+    """Central differences, all in one call; one by one where a law does not take arrays, or means something else with them."""
+    steps = 1e-7 * np.maximum(np.abs(x), 1e-2)
+    trials = x[:, None] + np.hstack([np.diag(steps), -np.diag(steps)])
+    try:
+        values = function(trials)
+        for k in {0, len(x) - 1, 2 * len(x) - 1} if len(x) else ():
+            if not np.allclose(values[:, k], function(trials[:, k]), rtol=1e-9, atol=1e-12, equal_nan=True):
+                raise ValueError(k)
+    except Exception:  # whatever the law raises, the calls below raise again if it is real
+        values = np.stack([function(trial) for trial in trials.T], axis=1)
+    return np.asarray((values[:, : len(x)] - values[:, len(x) :]) / (2.0 * steps))
 
 
 def _one_sided_stiffness(connection: Connection, moment: Moment) -> tuple[float, float]:
