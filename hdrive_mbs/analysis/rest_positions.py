@@ -24,6 +24,12 @@ ComplexArray = npt.NDArray[np.complex128]
 SPEEDS = 25
 """Speeds at which a static deflection that changes with speed is calculated."""
 
+COARSE = 0.05
+"""Largest change from one speed to the next, as a share of the way that a place takes over all; a larger one is halved."""
+
+CLOSEST = 1e-4
+"""Share of the highest speed down to which speeds are halved: a journal leaves the wall within a fraction of a rad/s."""
+
 SAME = 1e-9
 """Relative difference of deflections at three speeds below which they count as one."""
 
@@ -61,7 +67,7 @@ class RestPositions:
     """Static position of places over speed.
 
     table : place -> rows of speeds [rad/s], x and y [m]; one column where it does not depend on speed
-    points : steady rotation at rising speeds of the reference shaft, the last at the highest
+    points : steady rotation at rising speeds of the reference shaft, evenly spaced, the last at the highest
     """
 
     table: Mapping[str, FloatArray]
@@ -86,13 +92,30 @@ class RestPositions:
         points = []
         for speed in speeds:
             points.append(line.point(float(speed), points[-1] if points else None))
-        at = np.array([line.positions(point, places) for point in points])
+        found = {float(speed): point for speed, point in zip(speeds, points, strict=True)}
+        speeds, at = _refined(line, places, found, CLOSEST * top)
         return cls({name: np.vstack([speeds, at[:, k].real, at[:, k].imag]) for k, name in enumerate(places)}, tuple(points))
 
     @classmethod
     def none(cls, places: Sequence[str]) -> RestPositions:
         """On the axis."""
         return cls({name: np.zeros((3, 1)) for name in places}, ())
+
+
+def _refined(line: FreeLine, places: Sequence[str], found: dict[float, RotorPoint], closest: float) -> tuple[FloatArray, ComplexArray]:
+    """Speeds and positions, with speeds between where a place goes far from one to the next."""
+    at = {speed: line.positions(point, places) for speed, point in found.items()}
+    while True:
+        speeds = np.array(sorted(at))
+        rows = np.array([at[speed] for speed in speeds.tolist()])
+        ways = np.abs(np.diff(rows, axis=0))
+        far = np.any(ways > COARSE * np.sum(ways, axis=0), axis=1) & (np.diff(speeds) > 2.0 * closest)
+        if not far.any():
+            return speeds, rows
+        for k in np.flatnonzero(far):
+            speed = float(0.5 * (speeds[k] + speeds[k + 1]))
+            found[speed] = line.point(speed, found[float(speeds[k + 1])])
+            at[speed] = line.positions(found[speed], places)
 
 
 def rest_position(table: FloatArray, speed: FloatArray) -> ComplexArray:

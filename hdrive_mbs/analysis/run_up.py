@@ -18,8 +18,11 @@ from hdrive_mbs.analysis.speed_peaks import SpeedPeak
 from hdrive_mbs.analysis.synchronous_whirl import CriticalSpeed, critical_speeds, steady_whirl
 from hdrive_mbs.analysis.time_response import Response, simulate
 from hdrive_mbs.analysis.torque_balance import TorqueBalance
+from hdrive_mbs.bearings.friction import WithFriction
+from hdrive_mbs.bearings.journal import JournalBearing
+from hdrive_mbs.components.bearing import Bearing
 from hdrive_mbs.engine.solvers import Solver, Trapezoidal
-from hdrive_mbs.errors import AnalysisError, ParameterError, unknown_place
+from hdrive_mbs.errors import AnalysisError, ParameterError, SimulationError, unknown_place
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.network.rigid_mass import NOTHING, RigidMass
 from hdrive_mbs.scene import Scene
@@ -192,22 +195,31 @@ def _run(
     if solver is None:
         moving = {body.name for body in network.bodies if body.lateral}
         whirling = {name: speed for name, speed in fastest.items() if f"{name}.x" in moving}
-        chosen = choose_step(whirling, ratios, criticals, duration, accuracy)
+        chosen = choose_step(whirling, ratios, criticals, duration, accuracy, max(fastest.values(), default=0.0))
         solver = Trapezoidal(step=chosen.step, newton_tolerance=chosen.newton_tolerance)
         reason = chosen.reason
     start = _start(scene, line, initial_speed) if from_static else {}
 
     def once(with_solver: Solver) -> tuple[Response, LineFigures]:
-        response = simulate(
-            scene,
-            duration,
-            solver=with_solver,
-            initial_speed=initial_speed,
-            initial=start,
-            sample_step=sample_step,
-            progress=progress,
-            cancel=cancel,
-        )
+        try:
+            response = simulate(
+                scene,
+                duration,
+                solver=with_solver,
+                initial_speed=initial_speed,
+                initial=start,
+                sample_step=sample_step,
+                progress=progress,
+                cancel=cancel,
+            )
+        except SimulationError as error:
+            films = _oil_films(scene) if initial_speed == 0.0 else []
+            if not films:
+                raise
+            raise SimulationError(
+                f"{error} At rest the film of {', '.join(films)} carries nothing, and as it begins to, its damping jumps. "
+                "Start with a small speed, initial_speed=1.0 (rad/s), or with from_static=False."
+            ) from error
         speeds = [item.speed for item in criticals]
         return response, line_figures(network, response, reference, masses, static.table, speeds)
 
@@ -220,8 +232,21 @@ def _run(
             if figures.captured != better.captured:
                 notes.append("capture or passage depends on the step here: give a smaller accuracy")
             response, figures = finer, better
+    if not np.any(response.values[f"{reference}.speed"]):
+        notes.append("nothing turns the line: give it a DriveTorque or a Motor, or an initial_speed")
     settings = {"accuracy": accuracy, "from_static": from_static, "places": tuple(masses), "step": reason}
     return _result(response, figures, reference, criticals, static, errors, settings, notes)
+
+
+def _oil_films(scene: Scene) -> list[str]:
+    """Names of the bearings with an oil film."""
+    found = []
+    for name, part in scene.parts.items():
+        law = part.law if isinstance(part, Bearing) else None
+        while isinstance(law, WithFriction):
+            law = law.law
+        found += [name] if isinstance(law, JournalBearing) else []
+    return found
 
 
 def _prescribed_speed(network: Network) -> float:

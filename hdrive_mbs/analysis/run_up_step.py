@@ -74,11 +74,17 @@ def fastest_speeds(network: Network, duration: float, initial_speed: float) -> M
 
 
 def choose_step(
-    fastest: Mapping[str, float], ratios: Mapping[str, float], criticals: Sequence[CriticalSpeed], duration: float, accuracy: float
+    fastest: Mapping[str, float],
+    ratios: Mapping[str, float],
+    criticals: Sequence[CriticalSpeed],
+    duration: float,
+    accuracy: float,
+    geared: float = 0.0,
 ) -> ChosenStep:
     """The longest step of the trapezoidal rule that keeps peaks within ``accuracy`` (relative).
 
     fastest : highest speed [rad/s] of each spin that moves laterally too;  ratios : speed ratios of spins
+    geared : highest speed [rad/s] of anything else that turns, a motor before a reduction gear for one
 
     The rule answers an excitation of frequency w as the line would at  (2/h) tan(w h/2) = w (1 + (w h)^2/12): critical
     speeds come out (w h)^2/12 too low, and a peak there with them.  Its amplitude goes with m e w^2/(c w), whose
@@ -91,7 +97,8 @@ def choose_step(
     Where another critical speed gives every rotor a larger peak (reach x amplification, the latter 1/(2 damping ratio),
     or 1.2 w/sqrt(a) in a fast run-up), up to four times as much is allowed.  Away from critical speeds an amplitude is
     off by (w h)^2/6; there it may be four times the accuracy: (w h)^2/24 <= accuracy at the highest speed, at least
-    40 steps a revolution at 1e-3.
+    40 steps a revolution at 1e-3.  What turns faster without lateral motion (a motor before a reduction gear, which
+    excites with its own speed) counts like that too.
     """
     if not fastest:
         raise SceneError("Nothing in this scene turns.")
@@ -107,6 +114,13 @@ def choose_step(
         limits.append((math.sqrt(BESIDE * accuracy) / top, f"(w h)^2/24 <= {accuracy:.3g} {name}"))
         if not met:
             limits.append((math.sqrt(AT_CRITICAL * accuracy) / top, f"(w h)^2/2 <= {accuracy:.3g} {name}"))
+    if geared > top:
+        limits.append(
+            (
+                math.sqrt(BESIDE * accuracy) / geared,
+                f"(w h)^2/24 <= {accuracy:.3g} at the highest speed before a gear, w = {geared:.4g} rad/s",
+            )
+        )
     step, reason = min(limits)
     count = math.ceil(duration / step)
     return ChosenStep(duration / count, min(max(0.01 * accuracy, 1e-10), 1e-5), reason)

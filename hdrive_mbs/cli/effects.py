@@ -20,11 +20,7 @@ def effects(
     json: JsonFile = None,
 ) -> None:
     """List the effects that can be added to a scene: law, parameters, ranges, places."""
-    places: dict[str, list[str]] = {}
-    if scene is not None:
-        network = open_scene(scene).network()
-        bodies = [place for place in network.places if network.places[place] != "ground"]
-        places = {"body": bodies, "connection": [channel.name[:-6] for channel in network.channels if channel.name.endswith(".twist")]}
+    network = None if scene is None else open_scene(scene).network()
     library = []
     for name, kind in effect_types().items():
         fields = []
@@ -32,7 +28,7 @@ def effects(
             quantity: Quantity | None = field.metadata.get("quantity")
             entry: dict[str, object] = {"name": field.name}
             if quantity is not None:
-                entry |= {"unit": quantity.unit, "low": quantity.low, "high": quantity.high, "above": quantity.above, "doc": quantity.doc}
+                entry |= {key: getattr(quantity, key) for key in ("unit", "low", "high", "above", "typical", "doc")}
             else:
                 entry |= {"doc": field.metadata.get("doc", "")}
             entry["required"] = field.default is dataclasses.MISSING
@@ -41,17 +37,20 @@ def effects(
         library.append(
             {
                 "effect": name,
+                "family": kind.family,
+                "kind": kind.kind,
                 "acts_on": kind.acts_on,
                 "signature": kind.signature,
                 "law": inspect.cleandoc(kind.__doc__ or "").partition(f"\n\n{FIELDS}")[0],
                 "parameters": fields,
-                "places": places.get(kind.acts_on, []),
+                "places": [] if network is None else list(kind.places(network)),
             }
         )
     write_json(json, library)
     if json != "-":
-        rows = [[str(item["effect"]), str(item["acts_on"]), str(item["signature"]), _needs(item["parameters"])] for item in library]
-        print_table("effects", ["effect", "acts on", "seen in a record as", "parameters (required first)"], rows)
+        told = ("effect", "family", "acts_on", "signature")
+        rows = [[*(str(item[key]) for key in told), _needs(item["parameters"])] for item in library]
+        print_table("effects", ["effect", "family", "acts on", "seen in a record as", "parameters (required first)"], rows)
 
 
 def _needs(parameters: object) -> str:

@@ -10,6 +10,7 @@ import typer
 from hdrive_mbs.cli.options import Effects, JsonFile, OutFolder, ScenePath, Settings
 from hdrive_mbs.cli.output import print_table, write_json
 from hdrive_mbs.cli.scene_source import open_scene
+from hdrive_mbs.cli.speeds import parse_speeds
 from hdrive_mbs.errors import ParameterError, unknown_place
 
 if TYPE_CHECKING:
@@ -20,7 +21,10 @@ def unbalance(
     scene: ScenePath,
     set_: Settings = None,
     effect: Effects = None,
-    speeds: Annotated[str, typer.Option(metavar="FIRST:LAST:COUNT", help="Speeds of the reference shaft [rad/s].")] = "0:1000:401",
+    speeds: Annotated[
+        str,
+        typer.Option(metavar="FIRST:LAST:COUNT", help="Speeds of the reference shaft [rad/s], or with units: '0:12000:401 rpm'."),
+    ] = "0:1000:401",
     places: Annotated[str | None, typer.Option(metavar="PLACE,PLACE,...", help="Places to write; all if not given.")] = None,
     extra: Annotated[
         list[str] | None, typer.Option("--extra", metavar="PLACE=KG_M@RAD", help="Trial mass, e.g. rotor_2=1e-5@0.5 (several times).")
@@ -32,7 +36,7 @@ def unbalance(
     from hdrive_mbs.analysis.unbalance_response import unbalance_response
 
     chosen = open_scene(scene, set_ or (), effect or ())
-    grid = speed_range("--speeds", speeds)
+    grid = parse_speeds("--speeds", speeds)
     result = unbalance_response(chosen, grid, extra=dict(_trial(text) for text in extra or ()))
     wanted = result.places if places is None else tuple(name.strip() for name in places.split(","))
     for name in wanted:
@@ -53,25 +57,6 @@ def unbalance(
         headers = ["place", "speed [rad/s]", "amplitude, 0-peak [m]", "half-power width [rad/s]", "quality factor"]
         print_table(f"{chosen.name}: peaks of the unbalance response ({result.status})", headers, rows)
         print(f"{len(grid)} speeds, {result.seconds:.3f} s CPU.")
-
-
-def speed_range(option: str, text: str) -> np.ndarray:
-    """Evenly spaced values from ``FIRST:LAST:COUNT``, or one value.
-
-    Raises ParameterError for anything else.
-    """
-    parts = text.split(":")
-    try:
-        if len(parts) == 1:
-            return np.array([float(text)])
-        first, last, count = float(parts[0]), float(parts[1]), int(parts[2])
-        if len(parts) != 3 or count < 2:
-            raise ValueError
-    except (ValueError, IndexError):
-        raise ParameterError(f"{option} {text!r}: write FIRST:LAST:COUNT in rad/s with at least 2 values, like 0:1000:401.") from None
-    if not last > first:
-        raise ParameterError(f"{option} {text!r}: {last:g} rad/s is not above {first:g} rad/s. Write the lower speed first.")
-    return np.linspace(first, last, count)
 
 
 def _trial(text: str) -> tuple[str, tuple[float, float]]:

@@ -40,7 +40,7 @@ class LuGreFriction(MemoryTorqueEffect):
     )
     stribeck_speed: float = parameter("rad/s", "speed w_S at which the drop has faded", default=1.0, above=0.0, typical=(0.01, 20.0))
     stiffness: float = parameter("N m/rad", "bristle stiffness s_0", above=0.0, typical=(1.0, 1e6))
-    damping: float = parameter("N m s/rad", "bristle damping s_1 at low speed", default=0.0, low=0.0)
+    damping: float = parameter("N m s/rad", "bristle damping s_1 at low speed", default=0.0, low=0.0, typical=(1e-4, 100.0))
     viscous: float = parameter("N m s/rad", "viscous drag s_2", default=0.0, low=0.0, high=1e3)
 
     family: ClassVar[str] = "friction"

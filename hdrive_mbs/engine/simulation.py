@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.engine.assembly import Assembly
-from hdrive_mbs.engine.solvers import Solver
+from hdrive_mbs.engine.solvers import Implicit, Solver
 from hdrive_mbs.errors import SimulationError
 
 FloatArray = npt.NDArray[np.float64]
@@ -129,6 +129,9 @@ CHATTER = (
     "continuous law, looser tolerances or a fixed step, or raise max_steps if the run is just long"
 )
 
+ADVICE = "Use a smaller step or tighter tolerances, an implicit solver (Trapezoidal) for stiff shafts and damping, or look at the law that jumps."
+IMPLICIT_ADVICE = "Use a shorter step, or look at the law that jumps or has a corner."
+
 
 class _StopError(Exception):
     """Ends a run from inside the solver."""
@@ -191,10 +194,8 @@ def _collect(assembly: Assembly, solver: Solver, duration: float, error: str, ca
     for values in (*q.values(), *v.values()):
         finite &= np.isfinite(values)
     reached = float(times[-1]) if len(times) else 0.0
-    advice = (
-        "Use a smaller step or tighter tolerances, an implicit solver (Trapezoidal) for stiff shafts and damping, "
-        "or look at the law that jumps."
-    )
+    implicit = isinstance(solver, Implicit)
+    advice = IMPLICIT_ADVICE if implicit else ADVICE
     if not finite.all():
         first = int(np.argmin(finite))
         raise SimulationError(
@@ -203,6 +204,8 @@ def _collect(assembly: Assembly, solver: Solver, duration: float, error: str, ca
         )
     complete = reached >= duration * (1.0 - 1e-9)
     if not complete and not cancelled:
+        if implicit and error.startswith("SolveDynamic"):
+            error = "Newton's method found no solution of a step"
         why = f": {error}" if error else ""
         way_out = "Correct the law." if assembly.failures else "" if CHATTER in error else advice
         raise SimulationError(f"The run stopped at t = {reached:.6g} s of {duration:g} s with {solver.describe()}{why}. {way_out}".rstrip())

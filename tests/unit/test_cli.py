@@ -104,6 +104,8 @@ def test_effects_lists_every_effect_with_units_and_ranges(tmp_path: Path) -> Non
     assert friction["acts_on"] == "body"
     assert "motor" in friction["places"]
     assert {"name": "coulomb", "unit": "N m"}.items() <= friction["parameters"][0].items()
+    assert (friction["family"], friction["kind"], friction["parameters"][0]["typical"]) == ("friction", "force", [0.005, 50.0])
+    assert (library["KinematicError"]["places"], library["SensorGain"]["places"]) == (["gear"], [])
 
 
 def test_json_to_stdout_is_nothing_but_json() -> None:

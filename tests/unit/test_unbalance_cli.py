@@ -69,7 +69,7 @@ def test_a_trial_mass_is_given_with_its_angle(tmp_path: Path) -> None:
         (["--speeds", "1000:0:11"], "0 rad/s is not above 1000 rad/s"),
         (["--speeds", "0-1000"], "write FIRST:LAST:COUNT in rad/s"),
         (["--speeds", "0:1000"], "write FIRST:LAST:COUNT in rad/s"),
-        (["--speeds", "0:1000:1"], "at least 2 values"),
+        (["--speeds", "0:1000:1"], "write at least 2"),
         (["--speeds", "0:1000:11:7"], "write FIRST:LAST:COUNT in rad/s"),
         (["--extra", "rotor_2:1e-5"], "write PLACE=KG_M@RAD"),
     ],
@@ -78,6 +78,12 @@ def test_wrong_options_are_refused_in_one_line(arguments: list[str], message: st
     with pytest.raises(ParameterError, match=message) as caught:
         call(*arguments)
     assert "\n" not in str(caught.value)
+
+
+def test_speeds_may_be_given_in_rpm_as_for_campbell(tmp_path: Path) -> None:
+    call("--speeds", "3000:6000:4 rpm", "--json", str(tmp_path / "u.json"))
+    written = json.loads((tmp_path / "u.json").read_text())
+    assert written["speeds"] == pytest.approx([rpm * np.pi / 30.0 for rpm in (3000.0, 4000.0, 5000.0, 6000.0)])
 
 
 def test_an_unknown_place_is_named() -> None:

@@ -392,9 +392,9 @@ def test_wrong_parameters_are_well_outside_their_tolerance() -> None:
 def test_records_of_a_case_hold_the_stated_noise() -> None:
     """Measured less simulated in noise units has the variance 1 in every channel (4 spreads of sqrt(2/N) are allowed)."""
     case = drive.make_case([], np.random.default_rng(11))
-    line_, detail = specimen(case.true_parameters), case.more["finer_detail"]
-    made = line_.part("spring", corner=detail["corner"], edge=detail["edge"])
-    made = made.part("line", wave_inertia=4.5e-4 * detail["wave_inertia"], flex_inertia=0.012 * detail["flex_inertia"])
+    detail = case.more["finer_detail"]
+    assert case.true_parameters["J_wg"] == pytest.approx(4.5e-4 * detail["wave_inertia"])
+    made = specimen(case.true_parameters).part("spring", corner=detail["corner"], edge=detail["edge"])
     measured = {column.name: column.values for column in case.records["staircase"]}
     channels = made.channels("staircase")
     left = in_noise({name: measured[name] - channels[name] for name in channels}).reshape(4, -1)

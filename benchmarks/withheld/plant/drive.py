@@ -31,9 +31,10 @@ CAUSES: tuple[Cause, ...] = (
 
 Site = tuple[str, str]
 FAINT = 0.25  # share of single causes that are scaled down to a detectability of FAINT_RANGE
-FAINT_RANGE = (40.0, 1e4)
+FAINT_RANGE = (300.0, 1e6)  # 0.14 % of the noise to five times it
 BARELY = 25.0  # a cause below this is drawn again: nobody could tell it from noise and tolerance
-NEVER_FAINT = {"lost_motion"}  # a wider gap within the tolerance of the nominal one is no effect
+# a wider gap within the tolerance of the nominal one is no effect; lags of microseconds would be stiff
+NEVER_FAINT = {"lost_motion", "actuator_lag", "brake_lag"}
 TRIES = 12
 
 

@@ -30,4 +30,5 @@ def with_finer_detail(rng: np.random.Generator, specimen: Specimen) -> tuple[Spe
     line, spring = specimen.plant.line, specimen.plant.spring
     line = line._replace(wave_inertia=line.wave_inertia * sizes["wave_inertia"], flex_inertia=line.flex_inertia * sizes["flex_inertia"])
     spring = spring._replace(corner=sizes["corner"], edge=max(sizes["edge"], spring.edge))
-    return replace(specimen, plant=specimen.plant._replace(line=line, spring=spring)), sizes
+    values = {**specimen.values, "J_wg": line.wave_inertia, "J_fs": line.flex_inertia}
+    return replace(specimen, values=values, plant=specimen.plant._replace(line=line, spring=spring)), sizes

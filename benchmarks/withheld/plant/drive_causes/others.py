@@ -45,7 +45,7 @@ def _torque_ripple(rng: np.random.Generator, at: str, specimen: Specimen, streng
 
 def _actuator_lag(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     """Second order; its delay at low frequency is 2 z/w_n."""
-    delay, damping = strength * log_uniform(rng, 2e-4, 6e-3), rng.uniform(0.7, 1.2)
+    delay, damping = strength * log_uniform(rng, 5e-5, 6e-3), rng.uniform(0.7, 1.2)
     sizes = {"lag_frequency": 2.0 * damping / delay, "lag_damping": damping}
     symbols = {f"motor_{name}": value for name, value in sizes.items()}
     return specimen.part("motor", **sizes).told("actuator_lag", at, symbols=symbols, delay=delay)

@@ -33,7 +33,7 @@ def _delay(rng: np.random.Generator, at: str, specimen: Specimen, strength: floa
 
 
 def _gain(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
-    gain, cubic = either(rng, 1.015, 1.15) ** strength, rng.uniform(-1e-7, 1e-7)
+    gain, cubic = either(rng, 1.015, 1.15) ** strength, strength * rng.uniform(-1e-7, 1e-7)
     changed = replace(specimen, sensors=replace(specimen.sensors, torque_gain=gain, torque_cubic=cubic))
     return changed.told("torque_sensor_gain", at, "sensor", {"torque_gain": gain, "torque_cubic": cubic}, gain=gain)
 

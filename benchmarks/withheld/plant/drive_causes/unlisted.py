@@ -48,7 +48,7 @@ def _inertia_by_angle(rng: np.random.Generator, at: str, specimen: Specimen, str
 
 
 def _brake_lag(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> dict[str, float]:
-    return {"brake_time": strength * log_uniform(rng, 2e-4, 8e-3)}
+    return {"brake_time": strength * log_uniform(rng, 5e-5, 8e-3)}
 
 
 def _modulation(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> dict[str, float]:

@@ -255,7 +255,7 @@ def slope(t, y, torque, hx, hy, M, C, out, s, w, f, r):
                 fy += size * math.sin(z[WHIRL])
             else:
                 a, c = z[SWING], z[SWING + 1]
-                g = W[8] * (min(o / W[5], 1.6) - 1.0 - (a * a + c * c))
+                g = W[8] * (min(max(o / W[5] - 1.0, -0.02), 0.6) - (a * a + c * c))  # below its onset it dies slowly
                 zd[SWING] = g * a - lam * o * c + W[9] * (v[k] - v[h])
                 zd[SWING + 1] = g * c + lam * o * a + W[9] * (v[k + 1] - v[h + 1])
                 fx += W[2] * a
