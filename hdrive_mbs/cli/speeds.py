@@ -10,7 +10,7 @@ import numpy.typing as npt
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.units import to_si
 
-_BARE = re.compile(r"^[^\W\d_][^:]*$")
+_WITH_UNIT = re.compile(r"^[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*[^\W\d_]")
 
 
 def parse_speeds(option: str, text: str) -> npt.NDArray[np.float64]:
@@ -40,7 +40,7 @@ def _speed(option: str, whole: str, text: str, unit: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        if not text or _BARE.match(text):
+        if not _WITH_UNIT.match(text):
             raise _unreadable(option, whole) from None
         return to_si(text, "rad/s", option)
     if not np.isfinite(value):

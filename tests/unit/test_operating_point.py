@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from typing import Any
 
 import numpy as np
@@ -132,6 +133,18 @@ def test_every_torque_has_its_twist_by_the_inverse_of_the_law(torque: float) -> 
     point = hm.operating_point(geared(hm.ConstantTorque(value=torque), stiffness=law), motor_speed=0.0)
     assert point.angles["motor"] / U - point.angles["load"] == pytest.approx(float(law.twist(torque)), rel=1e-7)
     assert (point.in_gap, point.at_corner) == ((), ())
+
+
+def test_a_law_for_plain_numbers_has_the_same_point_as_one_for_arrays() -> None:
+    def with_if(twist: float) -> float:
+        return 2e4 * twist if twist > 0.0 else 1e4 * twist
+
+    load = hm.ConstantTorque(value=30.0)
+    same = hm.operating_point(geared(load, stiffness=lambda twist: np.where(twist > 0.0, 2e4 * twist, 1e4 * twist)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", hm.LoweringWarning)
+        point = hm.operating_point(geared(load, stiffness=with_if))
+    assert point.angles == pytest.approx(same.angles, rel=1e-9, abs=1e-15)
 
 
 def test_backlash_in_a_shaft_is_a_gap_too() -> None:

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 import hdrive_mbs as hm
 from hdrive_mbs.analysis.line_matrices import LineMatrices
-from hdrive_mbs.analysis.rest_positions import FreeLine
+from hdrive_mbs.analysis.rest_positions import FreeLine, RestPositions, rest_position
 from hdrive_mbs.analysis.run_up_step import choose_step, fastest_speeds
 from hdrive_mbs.analysis.speed_peaks import Whirl, speed_peaks
 from hdrive_mbs.analysis.synchronous_whirl import CriticalSpeed, critical_speeds
@@ -168,6 +168,50 @@ def test_a_journal_bearing_carries_nothing_at_rest_and_the_error_says_how_to_sta
     assert run.peak_amplitude["disc"] < 0.2 * np.hypot(x, y).min()
 
 
+def film(**changes: float) -> hm.Scene:
+    """A disc on a plain bearing whose wall carries it at rest."""
+    law = hm.JournalBearing(
+        diameter=0.03,
+        length=0.012,
+        radial_clearance=60e-6,
+        viscosity=0.03,
+        axial_stiffness=1e5,
+        tilt_stiffness=1e4,
+        tilt_damping=1.0,
+        wall_stiffness=1e9,
+        **changes,
+    )
+    return jeffcott(law=law, parts={"gravity": hm.Gravity()}, eccentricity=5e-6)
+
+
+def test_where_a_journal_leaves_the_wall_its_rest_position_is_followed_closely() -> None:
+    line = FreeLine(film())
+    table = RestPositions.over(line, ("disc",), 600.0).table["disc"]
+    way = np.sum(np.abs(np.diff(table[1] + 1j * table[2])))
+    # the film begins to carry within a fraction of a rad/s; evenly spaced speeds would be 25 rad/s apart
+    for speed in (0.5, 2.0, 7.0):
+        error = abs(rest_position(table, np.array([speed]))[0] - line.positions(line.point(speed), ("disc",))[0])
+        # between points that are 5 % of the way apart a curve errs by a part of that
+        assert error < 0.01 * way
+
+
+def test_a_start_from_the_wall_that_fails_says_how_to_start() -> None:
+    rough = hm.Trapezoidal(step=2e-3, newton_tolerance=1e-6)
+    with pytest.raises(hm.SimulationError, match=r"Newton's method found no solution.*film of bearing.*initial_speed=1\.0"):
+        hm.run_up(film(largest_eccentricity=0.999), 0.05, solver=rough)
+    # a spring has no film, and the hint would mislead
+    stiff = jeffcott(law=support(1e15, 1e15))
+    with pytest.raises(hm.SimulationError) as caught:
+        hm.run_up(stiff, 0.05, solver=hm.RungeKutta4(step=1e-4))
+    assert "film" not in str(caught.value)
+
+
+def test_a_line_that_nothing_turns_says_so() -> None:
+    run = hm.run_up(jeffcott(constant(0.0)), 0.01)
+    assert "nothing turns the line: give it a DriveTorque or a Motor, or an initial_speed" in run.status
+    assert "nothing turns" not in jeffcott_run().status
+
+
 # -- coast-down -------------------------------------------------------------------------------------
 
 
@@ -294,6 +338,15 @@ def test_the_step_follows_the_highest_critical_speed_met_and_the_highest_speed()
     assert choose_step({"disc": 900.0}, {"disc": 1.0}, met, 100.0, 1e-3).step == pytest.approx(math.sqrt(24e-3) / 900.0, rel=1e-2)
     # a critical speed far above is not met; then the highest speed itself counts
     assert choose_step({"disc": 50.0}, {"disc": 1.0}, met, 100.0, 1e-3).step == pytest.approx(math.sqrt(2e-3) / 50.0, rel=1e-2)
+
+
+def test_a_motor_before_a_reduction_gear_is_resolved_too() -> None:
+    slow = choose_step({"disc": 6.0}, {"disc": 0.02}, [], 100.0, 1e-3, 6.0)
+    # (w h)^2/2 = 1e-3 at the disc alone, (w h)^2/24 = 1e-3 at the motor
+    assert slow.step == pytest.approx(math.sqrt(2e-3) / 6.0, rel=1e-2)
+    geared = choose_step({"disc": 6.0}, {"disc": 0.02}, [], 100.0, 1e-3, 300.0)
+    assert geared.step == pytest.approx(math.sqrt(24e-3) / 300.0, rel=1e-2)
+    assert geared.reason == "(w h)^2/24 <= 0.001 at the highest speed before a gear, w = 300 rad/s"
 
 
 def test_a_lesser_resonance_may_be_four_times_as_rough() -> None:
