@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterable
 
 
@@ -56,7 +57,16 @@ class DependencyError(HdriveError, ImportError):
     """An optional package is missing; the text has the command that installs it."""
 
 
+LISTED = 40
+"""Names that an error lists; of more than that only those that are spelt alike, and how many there are."""
+
+
 def unknown_place(kind: str, name: str, known: Iterable[str], owner: str = "This scene") -> PlaceError:
     """A PlaceError of the form ``No place 'gaer'. This scene has: motor, gear.``"""
-    listed = ", ".join(known) or "none"
-    return PlaceError(f"No {kind} {name!r}. {owner} has: {listed}.")
+    names = list(known)
+    if len(names) <= LISTED:
+        return PlaceError(f"No {kind} {name!r}. {owner} has: {', '.join(names) or 'none'}.")
+    alike = list(dict.fromkeys([*difflib.get_close_matches(name, names, 8, 0.5), *(one for one in names if one.startswith(f"{name}."))]))
+    few = alike[:16] or names[:16]
+    which = "like it" if alike else "for instance"
+    return PlaceError(f"No {kind} {name!r}. {owner} has {len(names)}, {which}: {', '.join(few)}.")

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hdrive_mbs.analysis.plane_signal import turning_place
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.shaft_angle import TURN, ShaftAngle, shaft_history
 from hdrive_mbs.analysis.spectrum import chosen_history, chosen_span, folding_note, sample_count, values_at
@@ -79,7 +80,7 @@ def order_spectrum(
     source: Response | TimeHistory,
     channel: str | None = None,
     *,
-    against: str | TimeHistory = "motor.angle",
+    against: str | TimeHistory | None = None,
     window: str = "hann",
     start: float | None = None,
     end: float | None = None,
@@ -88,7 +89,8 @@ def order_spectrum(
 ) -> OrderSpectrum:
     """Amplitude spectrum (0-peak) over orders of a shaft: the signal is sampled evenly in its angle.
 
-    against : angle of the shaft, by channel ("motor.angle") or place ("motor"), or a time history [rad]
+    against : angle of the shaft, by channel ("motor.angle") or place ("motor"), or a time history [rad]; if not given,
+        the motor, else the reference shaft of a rotor line
     start, end : part of the record to analyse [s]; all of it if not given
     samples_per_revolution : if not given, from the shortest usual step of the record
     whole_revolutions : end the span at the last whole revolution, so that whole orders fall on lines
@@ -98,6 +100,9 @@ def order_spectrum(
     the angle does not run in one direction over the span, or by less than one revolution.
     """
     history, scene = chosen_history(source, channel)
+    if against is None:
+        has_motor = isinstance(source, TimeHistory) or "motor.angle" in source
+        against = "motor.angle" if has_motor else turning_place(source, history.name, None)
     shaft = shaft_history(source, against)
     shape = window_named(window)
     begin, finish = chosen_span(history, start, end)

@@ -21,7 +21,7 @@ def shaft_history(source: Response | TimeHistory, against: str | TimeHistory) ->
         return against
     if isinstance(source, TimeHistory):
         raise ParameterError(f"against = {against!r} names a channel, but a single time history has none; give the angle as a TimeHistory.")
-    return source[against if against in source else f"{against}.angle"]
+    return source[against if against in source or against.endswith(".angle") else f"{against}.angle"]
 
 
 def slope_at(shaft: TimeHistory, times: FloatArray) -> FloatArray:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
@@ -9,6 +11,9 @@ from hdrive_mbs.analysis.roots import ComplexArray
 from hdrive_mbs.network.network import Network
 
 DIRECTIONS = ("x", "y", "z", "psi", "theta", "phi")
+
+FIRST = {"axial": 1, "torsional": 2}
+"""Which motion the scale of a mode is taken from, if not from the orbit."""
 
 
 class StationShapes:
@@ -44,22 +49,27 @@ class StationShapes:
             if node in index:
                 self._matrix[k, 5, index[node]] = senses[node]
 
-    def of(self, index: npt.NDArray[np.intp], shapes: ComplexArray) -> ComplexArray:
+    def of(self, index: npt.NDArray[np.intp], shapes: ComplexArray, kinds: Sequence[str]) -> ComplexArray:
         """Shapes over the coordinates ``index``, (n, k), as (k, places, 6), scaled.
 
-        The place with the largest motion of the kind that prevails (displacement across or along the axis, else
-        spin, else tilt) has amplitude 1 (0-peak, major semi-axis), and its larger coordinate (x of a circle) is there at
-        time 0.
+        kinds : word of each shape; of a torsional one the spin has amplitude 1, of an axial one z, of any other one the
+            displacement, or the tilt where nothing is displaced
+
+        The place with the largest motion of that kind has amplitude 1 (0-peak, major semi-axis), and its larger
+        coordinate (x of a circle) is there at time 0.
         """
         motion = np.einsum("pdn,nk->kpd", self._matrix[:, :, index], shapes)
-        for mode in motion:
+        for mode, kind in zip(motion, kinds, strict=True):
             x, y, z, psi, theta, phi = mode.T
             orbit = 0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y))
             tilt = 0.5 * (np.abs(theta - 1j * psi) + np.abs(theta + 1j * psi))
-            for size, options in ((orbit, (x, y)), (np.abs(z), (z,)), (np.abs(phi), (phi,)), (tilt, (theta, psi))):
+            options = [(orbit, (x, y)), (np.abs(z), (z,)), (np.abs(phi), (phi,)), (tilt, (theta, psi))]
+            if kind in FIRST:
+                options.insert(0, options.pop(FIRST[kind]))
+            for size, both in options:
                 if size.max(initial=0.0) > 1e-9 * np.abs(mode).max(initial=0.0):
                     place = int(np.argmax(size))
-                    first, last = complex(options[0][place]), complex(options[-1][place])
+                    first, last = complex(both[0][place]), complex(both[-1][place])
                     lead = first if abs(first) > 0.999 * abs(last) else last  # x of a circle
                     mode *= abs(lead) / lead / size[place]
                     break

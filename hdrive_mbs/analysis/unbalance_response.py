@@ -285,7 +285,8 @@ def _unstable_text(scene: Scene, grid: FloatArray, speed: float, growth: float, 
     return (
         f"{scene.name!r} has no steady response up to {grid[-1]:g} rad/s: it is unstable {start} (a whirl of "
         f"{frequency:.4g} rad/s grows with {growth:.3g} 1/s). End the speeds below, or look for what feeds whirl: rotating_damping of "
-        "shafts, stiffness_xy unlike stiffness_yx of bearings; damping of bearings and foundations works against it."
+        "shafts, stiffness_xy unlike stiffness_yx of bearings, the oil film of a JournalBearing that turns fast or carries little; "
+        "damping of bearings and foundations works against it."
     )
 
 

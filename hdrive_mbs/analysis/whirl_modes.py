@@ -99,7 +99,7 @@ def whirl_modes(scene: Scene, speed: float = 0.0, *, count: int | None = 12) -> 
         kept = roots.lowest(len(roots.values) if count is None else count)
         shapes = model.shapes(kept)
         words, circularity = kinds.classify(block.index, shapes, np.full(shapes.shape[1], -1.0 if speed < 0.0 else 1.0))
-        found.append(list(zip(kept.values.tolist(), words, circularity.tolist(), stations.of(block.index, shapes), strict=True)))
+        found.append(list(zip(kept.values.tolist(), words, circularity.tolist(), stations.of(block.index, shapes, words), strict=True)))
     modes = list(merged(found))[:count]
     values = np.array([mode[0] for mode in modes], complex)
     ratios = -values.real / np.abs(values)

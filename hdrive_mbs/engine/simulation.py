@@ -129,7 +129,10 @@ CHATTER = (
     "continuous law, looser tolerances or a fixed step, or raise max_steps if the run is just long"
 )
 
-ADVICE = "Use a smaller step or tighter tolerances, an implicit solver (Trapezoidal) for stiff shafts and damping, or look at the law that jumps."
+ADVICE = (
+    "Use a smaller step or tighter tolerances, an implicit solver (Trapezoidal) for stiff shafts and damping, "
+    "or look at the law that jumps."
+)
 IMPLICIT_ADVICE = "Use a shorter step, or look at the law that jumps or has a corner."
 
 

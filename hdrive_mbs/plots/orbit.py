@@ -23,12 +23,15 @@ MOST_MARKS = 60
 CHANGING = 0.02
 """Change of speed above which the path is coloured by it."""
 
+ASIDE = 0.2
+"""Size of a path over its distance from the origin below which the picture shows the path alone: whirl about a large sag."""
+
 WORDS = {"axis": "from the axis", "static": "from the static position", "mean": "from its mean"}
 
 
 @plot.register
 def plot_orbit(result: Orbit, ax: Axes | None = None, *, marks: bool = True) -> Axes:
-    """The path in x and y with equal scales, coloured by the speed where that changes.
+    """The path in x and y with equal scales, coloured by the speed where that changes; without the origin where that is far off.
 
     marks : points where the spin angle is a whole number of revolutions
     """
@@ -53,12 +56,18 @@ def plot_orbit(result: Orbit, ax: Axes | None = None, *, marks: bool = True) -> 
             ax.plot(*(factor * result.marks.T), "o", color=COLOURS[1], markersize=3.5, label="once per revolution")
         ax.plot([x[0]], [y[0]], ">", color="black", markersize=5.0, label="start")
         ax.plot([x[-1]], [y[-1]], "s", color="black", markersize=4.0, label="end")
-        reach = 1.08 * factor * furthest or 1.0
-        ax.set_xlim(-reach, reach)
-        ax.set_ylim(-reach, reach)
+        (left, right), (low, high) = (x.min(), x.max()), (y.min(), y.max())
+        size = 0.5 * max(right - left, high - low)
+        if 0.0 < size < ASIDE * factor * furthest:
+            across, up, reach = 0.5 * (left + right), 0.5 * (low + high), 1.2 * size
+        else:
+            across, up, reach = 0.0, 0.0, 1.08 * factor * furthest or 1.0
+        ax.set_xlim(across - reach, across + reach)
+        ax.set_ylim(up - reach, up + reach)
         ax.set_aspect("equal")
-        ax.set_xlabel(f"x, counted {WORDS[result.about]} [{unit}]")
-        ax.set_ylabel(f"y, counted {WORDS[result.about]} [{unit}]")
+        words = "" if result.unit == "N" and result.about == "axis" else f", counted {WORDS[result.about]}"
+        ax.set_xlabel(f"x{words} [{unit}]")
+        ax.set_ylabel(f"y{words} [{unit}]")
         legend_above(ax)
         if fresh:
             ax.figure.figure.suptitle(_title(result), x=0.01, ha="left", fontsize=10)

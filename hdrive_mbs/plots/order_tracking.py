@@ -59,6 +59,9 @@ def plot_order_tracking(
         lower.set_xlabel(f"speed of {readable(result.reference)} [rad/s]")
         figure.align_ylabels([upper, lower])
         title = f"{readable(result.channel)}: orders of {readable(result.reference)}, windows of {number(result.revolutions)} revolutions"
+        faint = [name for name in result.tracks if name not in chosen] if tracks is None else []
+        if faint:
+            title += f"\nbelow {100.0 * VISIBLE:g} % of the largest and not drawn: order {', '.join(faint)}"
         figure.suptitle(title, x=0.01, ha="left", fontsize=10)
     first: Axes = upper
     return first

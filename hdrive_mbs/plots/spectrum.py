@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 from hdrive_mbs.analysis.order_spectrum import OrderSpectrum
 from hdrive_mbs.analysis.spectrum import Spectrum
 from hdrive_mbs.plots.dispatch import plot
-from hdrive_mbs.plots.look import COLOURS, given_or_new, house_look, readable, unit_text
+from hdrive_mbs.plots.lengths import shown_unit
+from hdrive_mbs.plots.look import COLOURS, given_or_new, house_look, readable
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -27,14 +28,14 @@ def plot_spectrum(
     peaks : how many of the largest peaks are named
     The mean (line at 0 Hz) is written in the title, not drawn.
     """
-    found = [(peak.frequency, peak.amplitude) for peak in result.peaks(peaks)]
+    factor, unit = _unit(result)
+    found = [(peak.frequency, factor * peak.amplitude) for peak in result.peaks(peaks)]
     with house_look():
         ax = given_or_new(ax, 7.2, 3.6)
-        _draw(ax, result.frequency, result.amplitude, found, highest, logarithmic, "Hz")
+        _draw(ax, result.frequency, factor * result.amplitude, found, highest, logarithmic, "Hz")
         ax.set_xlabel("frequency [Hz]")
-        _labels(
-            ax, result, f"{_window(result.window)} window, {result.start:.4g} to {result.end:.4g} s, {result.resolution:.3g} Hz per line"
-        )
+        span = f"{result.start:.4g} to {result.end:.4g} s, {result.resolution:.3g} Hz per line"
+        _labels(ax, result, unit, f"{_window(result.window)} window, {span}")
     return ax
 
 
@@ -43,13 +44,14 @@ def plot_order_spectrum(
     result: OrderSpectrum, ax: Axes | None = None, *, highest: float | None = None, logarithmic: bool = False, peaks: int = 4
 ) -> Axes:
     """Amplitudes, 0-peak, over orders of a shaft (options as for a spectrum; ``highest`` is an order)."""
-    found = [(peak.order, peak.amplitude) for peak in result.peaks(peaks)]
+    factor, unit = _unit(result)
+    found = [(peak.order, factor * peak.amplitude) for peak in result.peaks(peaks)]
     with house_look():
         ax = given_or_new(ax, 7.2, 3.6)
-        _draw(ax, result.order, result.amplitude, found, highest, logarithmic, "")
+        _draw(ax, result.order, factor * result.amplitude, found, highest, logarithmic, "")
         ax.set_xlabel(f"order: periods per revolution of {readable(result.against)} [1]")
         speeds = f"{result.slowest:.4g} to {result.fastest:.4g} rad/s"
-        _labels(ax, result, f"{_window(result.window)} window, {result.revolutions:.4g} revolutions at {speeds}")
+        _labels(ax, result, unit, f"{_window(result.window)} window, {result.revolutions:.4g} revolutions at {speeds}")
     return ax
 
 
@@ -57,10 +59,15 @@ def _window(name: str) -> str:
     return "Hann" if name == "hann" else readable(name)
 
 
-def _labels(ax: Axes, result: Spectrum | OrderSpectrum, how: str) -> None:
-    unit = unit_text(result.unit)
+def _unit(result: Spectrum | OrderSpectrum) -> tuple[float, str]:
+    """Factor and unit of the amplitudes."""
+    return shown_unit(result.unit, float(np.max(result.amplitude[1:], initial=0.0)))
+
+
+def _labels(ax: Axes, result: Spectrum | OrderSpectrum, unit: str, how: str) -> None:
+    factor, mean_unit = shown_unit(result.unit, abs(result.mean))
     ax.set_ylabel(f"amplitude, 0-peak [{unit}]")
-    ax.set_title(f"{readable(result.channel)}: mean {result.mean:.4g}\u2009{unit}\n{how}", fontsize=9.5)
+    ax.set_title(f"{readable(result.channel)}: mean {factor * result.mean:.4g}\u2009{mean_unit}\n{how}", fontsize=9.5)
 
 
 def _draw(

@@ -12,12 +12,13 @@ from matplotlib.axes import Axes
 from hdrive_mbs.analysis.unbalance_response import UnbalanceResponse
 from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.plots.dispatch import plot
+from hdrive_mbs.plots.lengths import shown_unit
 from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, new_figure, number, other_unit, readable, style
 
 FloatArray = npt.NDArray[np.float64]
 
 MOST_LINES = 4
-"""Places in the automatic choice: those that move most."""
+"""Places in the automatic choice: rotors and bearings that move most."""
 
 MOST_ORBITS = 6
 """Panels of orbits in one picture."""
@@ -39,7 +40,7 @@ def plot_unbalance_response(
 
     view : "bode" (major semi-axis and phase lag of x over speed), "polar" (x as a complex number), "orbits" (one panel
         a speed) or "forces" (of the bearings on their housings)
-    places : which; those that move most if not given (bearings, for forces: all)
+    places : which; if not given, those rotors and bearings that move most (for forces: all bearings)
     speeds : of the orbits [rad/s], the nearest calculated ones are drawn; those of the peaks if not given
     logarithmic : amplitudes of Bode and forces on a logarithmic scale
     """
@@ -64,15 +65,23 @@ def _chosen(result: UnbalanceResponse, places: Sequence[str] | None) -> list[str
             raise ParameterError("places: name at least one place to draw.")
         return list(places)
     candidates = list(dict.fromkeys(result.peak_places)) or [place for place in result.places if np.any(result.of(place).major > 0.0)]
+    candidates = _named(result, candidates)
     size = {place: float(np.nanmax(result.of(place).major, initial=0.0)) for place in candidates}
     largest = sorted(candidates, key=lambda place: -size[place])[:MOST_LINES]
     return [place for place in candidates if place in largest] or list(result.places[:1])
 
 
+def _named(result: UnbalanceResponse, places: list[str]) -> list[str]:
+    """Of the places those that are parts of their own, each station once; all if none is or the scene is not known."""
+    if result.scene is None:
+        return places
+    nodes = result.scene.network().places
+    return [place for place in places if place in result.scene.parts and nodes.get(place, place) == place] or places
+
+
 def _scale(result: UnbalanceResponse, places: Sequence[str]) -> tuple[float, str]:
     """Factor and unit that make lengths readable."""
-    largest = max(float(np.nanmax(result.of(place).major, initial=0.0)) for place in places)
-    return (1e6, "µm") if largest < 1e-3 else (1e3, "mm")
+    return shown_unit("m", max(float(np.nanmax(result.of(place).major, initial=0.0)) for place in places))
 
 
 def _title(result: UnbalanceResponse, what: str) -> str:

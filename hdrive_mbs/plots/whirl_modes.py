@@ -13,12 +13,16 @@ from hdrive_mbs.analysis.whirl_modes import WhirlModes
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import GREY, house_look, legend_above, new_figure, number, readable, style
+from hdrive_mbs.plots.shafts import drive_order, shaft_numbers
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 POINTS = 20
 """Points of the curve between two places."""
+
+TOP = 1.12
+"""End of the axis of amplitudes; further out where a shaft bends further between its places."""
 
 
 @plot.register
@@ -43,8 +47,8 @@ def plot_whirl_modes(result: WhirlModes, ax: Axes | None = None, *, mode: int = 
             return ax
         columns = 2 if count == 4 else min(count, 3)
         rows = -(-count // columns)
-        figure = new_figure(2.8 * columns + 0.5, 2.5 * rows + 0.9)
-        axes = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
+        figure = new_figure(3.1 * columns + 0.5, 2.5 * rows + 0.9)
+        axes = figure.subplots(rows, columns, squeeze=False).ravel()
         for k in range(count):
             _shape(axes[k], result, k)
             axes[k].set_title(_title(result, k), fontsize=9)
@@ -52,7 +56,6 @@ def plot_whirl_modes(result: WhirlModes, ax: Axes | None = None, *, mode: int = 
             spare.remove()
         for k in range(0, count, columns):
             axes[k].set_ylabel("motion, 0-peak,\nlargest 1 [1]")
-        axes[0].set_ylim(-1.12, 1.12)
         name = result.scene.name if result.scene is not None else "rotor line"
         left = len(result.frequencies) - count
         more = f", {left} more not drawn" if left else ""
@@ -75,6 +78,7 @@ def _shape(ax: Axes, result: WhirlModes, k: int) -> None:
     motion = dict(zip(DIRECTIONS, result.shapes[k].T, strict=True))
     word = result.whirl[k]
     ax.axhline(0.0, color=GREY, linewidth=0.8, linestyle="-", zorder=0.5)
+    ax.set_ylim(-TOP, TOP)
     if word == "torsional" and np.any(np.isnan(result.positions)):
         _by_place(ax, result, _at_largest(motion["phi"]))
         return
@@ -90,12 +94,15 @@ def _shape(ax: Axes, result: WhirlModes, k: int) -> None:
             ("x", *_together(motion["x"], motion["theta"]), 0),
             ("y", *_together(motion["y"], -motion["psi"]), 1),
         ]
+    shafts = np.array(shaft_numbers(result.scene, result.places))
     for label, values, slopes, look in curves:
         z = result.positions
-        if slopes is None:
-            ax.plot(z[on_shaft], values[on_shaft], label=label, **style(look))
-        else:
-            ax.plot(*_curve(z[on_shaft], values[on_shaft], slopes[on_shaft]), label=label, **style(look))
+        pieces = [_curve(z[own], values[own], None if slopes is None else slopes[own]) for own in _shafts(shafts, on_shaft)]
+        along = np.concatenate([np.append(piece[0], np.nan) for piece in pieces])
+        across = np.concatenate([np.append(piece[1], np.nan) for piece in pieces])
+        ax.plot(along, across, label=label, **style(look))
+        top = max(ax.get_ylim()[1], 1.06 * float(np.nanmax(np.abs(across), initial=0.0)))
+        ax.set_ylim(-top, top)
         ax.plot(z[on_shaft], values[on_shaft], color=style(look)["color"], linestyle="none", marker="o", markersize=3.5)
         beside = shown & ~on_shaft
         if beside.any() and slopes is not None:
@@ -124,8 +131,15 @@ def _together(values: ComplexArray, slopes: ComplexArray) -> tuple[FloatArray, F
     return np.real(values * turn), np.real(slopes * turn)
 
 
-def _curve(z: FloatArray, values: FloatArray, slopes: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Cubics from place to place with the tilts as slopes; places at the same position are not joined."""
+def _shafts(numbers: npt.NDArray[np.int_], shown: npt.NDArray[np.bool_]) -> list[npt.NDArray[np.bool_]]:
+    """The shown places of each shaft."""
+    return [shown & (numbers == number) for number in np.unique(numbers[shown])]
+
+
+def _curve(z: FloatArray, values: FloatArray, slopes: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+    """Cubics from place to place with the tilts as slopes, or straight lines; places at the same position are not joined."""
+    if slopes is None:
+        return z, values
     along, across = [z[:1]], [values[:1]]
     for a, b in pairwise(range(len(z))):
         length = z[b] - z[a]
@@ -140,7 +154,8 @@ def _curve(z: FloatArray, values: FloatArray, slopes: FloatArray) -> tuple[Float
 
 
 def _by_place(ax: Axes, result: WhirlModes, values: FloatArray) -> None:
-    """Spin angles of a line of which not every place has a position."""
-    turning = np.flatnonzero(np.array([not place.endswith(".housing") for place in result.places]))
+    """Spin angles of a line of which not every place has a position, from the motor on."""
+    turning = [k for k in drive_order(result.scene, result.places) if not result.places[k].endswith(".housing")]
     ax.plot(range(len(turning)), values[turning], marker="o", markersize=4, label="spin angle", **style(2))
-    ax.set_xticks(range(len(turning)), [readable(result.places[k]) for k in turning], rotation=40, ha="right", rotation_mode="anchor")
+    names = [readable(result.places[k]) for k in turning]
+    ax.set_xticks(range(len(turning)), names, rotation=60, ha="right", rotation_mode="anchor", fontsize=7)

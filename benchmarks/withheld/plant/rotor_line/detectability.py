@@ -4,9 +4,9 @@ S is the change of all channels that the causes make at the nominal bench, in un
 as their offsets are unknown); Y(b) the channels of a bench without them whose toleranced values are b standard deviations away.
 
 - linear: min over b of |S - J b|^2 + |b|^2 with the nominal bench's J: the gain in fit that the right cause brings over the best
-  bench without it, right for faint causes, far too large where values must move a long way to hide a strong one;
+  bench without it. Right for faint causes, an order of magnitude for strong ones, and far too large for a value outside its tolerance;
 - refitted: min over b of |S - Y(b) + Y(0)|^2 + |b|^2, searched for with a Jacobian that is updated (Broyden) and not computed anew:
-  where the search stops early it is too large as well, never too small. A value outside its tolerance costs its own square.
+  where the search stops early it is too large, never too small. A value outside its tolerance costs at most its own square.
 
 Below about 25 no method can tell.
 """
