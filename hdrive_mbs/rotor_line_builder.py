@@ -17,6 +17,9 @@ from hdrive_mbs.scene import Scene
 SAME_PLACE = 1e-9
 """Positions closer than this share of the length of the shaft are one."""
 
+SHORTEST = 5e-4
+"""Length of a section over that of the shaft below which it is refused: its stiffness, with the cube of that, drowns the rest."""
+
 _POSITION = Quantity(unit="m", doc="position along the axis")
 _DIAMETER = Quantity(unit="m", doc="outer diameter", above=0.0)
 _BORE = Quantity(unit="m", doc="inner diameter", low=0.0)
@@ -83,6 +86,7 @@ def rotor_line(
     _check_places(placed, start, end, near)
     cuts = _cuts(placed, steps, near)
     hard = _rigid_pairs(rigid, [label for _, label in placed])
+    _check_lengths(cuts, hard, end - start)
     made: dict[str, Component] = {label: stations[label][1] for _, label in placed}
     chain: list[str] = []
     for number, ((low, left), (high, right)) in enumerate(itertools.pairwise(cuts), start=1):
@@ -129,7 +133,8 @@ def _placed(stations: Mapping[str, tuple[float, Component]]) -> list[tuple[float
     found = []
     for label, item in stations.items():
         if not _is_list(item) or len(item) != 2 or not isinstance(item[1], Component):
-            raise ParameterError(f"stations[{label!r}] = {item!r}: must be (z, part), a position in m and a part.")
+            given = type(item).__name__ if isinstance(item, Component) else repr(item)
+            raise ParameterError(f"stations[{label!r}] = {given}: must be (z, part), a position in m and a part.")
         found.append((_number(f"z of station {label!r}", item[0], _POSITION), label))
     return sorted(found)
 
@@ -187,6 +192,20 @@ def _cuts(placed: list[tuple[float, str]], steps: list[_Step], near: float) -> l
     ends = [steps[0].start, *(step.end for step in steps)]
     bare = [(z, "") for z in ends if all(abs(z - other) > near for other, _ in placed)]
     return sorted([*placed, *bare])
+
+
+def _check_lengths(cuts: list[tuple[float, str]], hard: set[tuple[str, str]], whole: float) -> None:
+    """Refuse elastic sections that are so short that rounding errors of their stiffness are those of the line."""
+    for (low, left), (high, right) in itertools.pairwise(cuts):
+        if high - low < SHORTEST * whole and (left, right) not in hard:
+            ends = " to ".join(repr(label) if label else f"a step at z = {z:.9g} m" for z, label in ((low, left), (high, right)))
+            way = "Move the step to the station." if left or right else "Make one step of them."
+            if left and right:
+                way = f"Move them apart, name them in rigid=[({left!r}, {right!r})], or attach one to the other."
+            raise SceneError(
+                f"The section from {ends} is {high - low:.3g} m long, less than {SHORTEST:g} of the shaft of {whole:.3g} m; it would be so "
+                f"stiff that rounding errors drown the rest of the line. {way}"
+            )
 
 
 def _rigid_pairs(rigid: Sequence[tuple[str, str]], labels: Sequence[str]) -> set[tuple[str, str]]:

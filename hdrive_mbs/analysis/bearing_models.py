@@ -125,7 +125,10 @@ class _Line:
             )
         data: dict[str, Any] = {"left": self.parts[left], "bearing": bearing, "right": self.parts[right]}
         made: Component
-        made = SimplifiedSection(**data) if model == "simplified" else ImprovedSection(**data, highest_speed=highest_speed)
+        try:
+            made = SimplifiedSection(**data) if model == "simplified" else ImprovedSection(**data, highest_speed=highest_speed)
+        except ParameterError as error:
+            raise SceneError(f"{name!r}: {error}") from error
         self.pairs = [pair for pair in self.pairs if name not in pair]
         del self.parts[left], self.parts[right]
         self._replace(name, {name: made}, {f"{left}.a": f"{name}.a", f"{right}.b": f"{name}.b"})

@@ -6,6 +6,7 @@ import csv
 import dataclasses
 import functools
 import hashlib
+import inspect
 import io
 import json
 import os
@@ -64,9 +65,11 @@ class Result:
             cls.__repr__ = Result.__repr__  # type: ignore[method-assign]
 
     def __repr__(self) -> str:
-        """Name, scene, status and a line on each field; the numbers themselves are in the fields."""
+        """Name, scene, status and a line on each field, the own ones first; the numbers themselves are in the fields."""
         of = f" of {self.scene.name!r}" if self.scene is not None else ""
         shown = [item.name for item in dataclasses.fields(self) if item.name not in ("scene", "status", "settings", "versions")]
+        own = inspect.get_annotations(type(self))
+        shown.sort(key=lambda name: name not in own)
         width = max(map(len, shown), default=0)
         lines = [f"  {name:<{width}}  {_in_short(getattr(self, name))}" for name in shown]
         return "\n".join([f"{type(self).__name__}{of}: {self.status}", *lines])

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.analysis.result import Result
+from hdrive_mbs.analysis.result import Result, write_csv
 from hdrive_mbs.analysis.time_tables import for_tables
 from hdrive_mbs.engine.assembly import Assembly, assemble
 from hdrive_mbs.engine.simulation import RawRun, run
@@ -86,6 +88,13 @@ class Response(Result):
 
     def columns(self) -> dict[str, np.ndarray]:
         return {"time [s]": self.times} | {f"{name} [{self.units[name]}]": values for name, values in self.values.items()}
+
+    def to_csv(self, path: str | os.PathLike[str], channels: Sequence[str] | None = None) -> Path:
+        """Write histories as CSV (comma, point, one header line with units): of these channels, of all if not given."""
+        if channels is None:
+            return super().to_csv(path)
+        histories = [self[name] for name in channels]
+        return write_csv(path, {"time [s]": self.times} | {f"{one.name} [{one.unit}]": one.values for one in histories})
 
     def summary(self) -> dict[str, dict[str, float]]:
         """min, max, mean, rms and final value of each channel."""

@@ -27,6 +27,9 @@ from hdrive_mbs.scene import Scene
 HEAVY = 0.2
 """Damping ratio from which a critical speed is marked: amplification 1/(2 zeta) below 2.5, where API RP 684 no longer counts it."""
 
+BACKWARD = -0.98
+"""Circularity below which a backward whirl is marked: forward circles, which alone unbalance drives, have 10 % of its amplitude."""
+
 ABOVE = 1.5
 """Modes up to this multiple of the highest order line are calculated where no number of branches is given."""
 
@@ -48,7 +51,8 @@ class WhirlCampbell(Result):
     critical_speeds : where a branch meets an order line [rad/s], ascending, found on the line itself
     critical_orders, critical_branches : index of the order line and of the branch
     critical_whirl, critical_damping_ratios : of the mode there
-    critical_notes : "", or why unbalance does not excite this crossing much: "backward", "heavily damped", ...
+    critical_notes : "", or why unbalance does not excite this crossing much: "backward" (nearly circles; a flat backward
+        orbit of unequal bearings is excited), "heavily damped", "axial", ...
     threshold_speeds : where a branch begins or ceases to grow [rad/s], ascending
     threshold_branches, threshold_frequencies : which branch, and its frequency there [rad/s]
     threshold_notes : "unstable above" or "stable above"
@@ -201,11 +205,14 @@ class _Critical:
     order: int
     branch: int
     whirl: str
+    circularity: float
     damping_ratio: float
+    per_turn: float
 
     @property
     def note(self) -> str:
-        notes = ["backward"] if self.whirl == "backward" else []
+        notes = ["backward"] if self.whirl == "backward" and self.circularity < BACKWARD else []
+        notes += ["axial"] if self.whirl == "axial" and self.per_turn == 1.0 else []
         notes += ["heavily damped"] if self.damping_ratio > HEAVY else []
         notes += ["unstable"] if self.damping_ratio < -STABLE else []
         return ", ".join(notes)
@@ -300,8 +307,8 @@ def _criticals(kinds: WhirlKinds, grid: FloatArray, branches: list[_Branch], lin
                 there = branch.part.at(branch.column, speed)
                 if there is not None:
                     value, shape = there
-                    words, _ = kinds.classify(branch.part.block.index, shape, np.array([-1.0 if speed < 0.0 else 1.0]))
-                    found.append(_Critical(speed, order, number, words[0], -value.real / abs(value)))
+                    words, circles = kinds.classify(branch.part.block.index, shape, np.array([-1.0 if speed < 0.0 else 1.0]))
+                    found.append(_Critical(speed, order, number, words[0], float(circles[0]), -value.real / abs(value), line.order))
     return sorted(found, key=lambda critical: critical.speed)
 
 

@@ -14,7 +14,7 @@ from hdrive_mbs.analysis.run_up import RunUp
 from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.lengths import shown_unit
-from hdrive_mbs.plots.look import COLOURS, GREY, house_look, legend_above, new_figure, number, other_unit, readable, style
+from hdrive_mbs.plots.look import GREY, house_look, legend_above, new_figure, number, other_unit, readable, style
 from hdrive_mbs.plots.thinning import thinned
 
 PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8}
@@ -25,6 +25,10 @@ ORIGINS = {
     "static": ("whirl", "mass_centre_whirl", "whirl about rest"),
     "axis": ("radial", "mass_centre_radial", "distance from axis"),
 }
+
+
+FAST = 0.3
+"""Share of the highest speed above which a run that is never slower than that begins its axis there."""
 
 
 @plot.register
@@ -106,7 +110,9 @@ def _rotor(ax: Axes, result: RunUp, name: str, about: str, logarithmic: bool) ->
     _criticals(ax, result, name, top)
     if about == "static":
         _peaks(ax, result, name, top, factor, unit)
-    ax.set_xlim(0.0, 1.02 * top)
+    slowest = float(speed.min())
+    slowest = slowest - 0.02 * (top - slowest) if slowest > FAST * top else 0.0
+    ax.set_xlim(slowest, top + 0.02 * (top - slowest) or 1.0)
     if logarithmic:
         ax.set_yscale("log")
         ax.set_ylim(1e-4 * factor * largest, 3.0 * factor * largest)
@@ -136,7 +142,7 @@ def _ratio(result: RunUp, name: str) -> float:
 
 def _peaks(ax: Axes, result: RunUp, name: str, top: float, factor: float, unit: str) -> None:
     for speed, amplitude, *_ in result.peaks(name):
-        ax.plot([abs(speed)], [factor * amplitude], "o", color=COLOURS[1], markersize=3.5)
+        ax.plot([abs(speed)], [factor * amplitude], "o", color="white", markeredgecolor="black", markersize=4.0, zorder=4)
         near_end = abs(speed) > 0.75 * top
         options: dict[str, Any] = {"ha": "right" if near_end else "left", "va": "bottom", "fontsize": 8.5, "bbox": PAPER}
         text = f"{number(factor * amplitude)}\u2009{unit}\nat {number(abs(speed))}\u2009rad/s"

@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from hdrive_mbs.analysis.rotor_places import reference_shaft
 from hdrive_mbs.analysis.whirl_campbell import WhirlCampbell
+from hdrive_mbs.analysis.whirl_modes import STABLE
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, new_figure, number, other_unit, readable
 from hdrive_mbs.plots.whirl_look import WHIRL_LOOK
@@ -16,6 +18,10 @@ from hdrive_mbs.plots.whirl_look import WHIRL_LOOK
 RING: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 6, "markerfacecolor": "white", "markeredgewidth": 1.4}
 PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8}
 UNSTABLE = "#F3D9D6"
+DRIFTING = "#F8F3E4"
+
+_Box = tuple[float, float, float, float]
+"""Left, right, low and high edge of a name, in points."""
 
 LABEL_SIDES = (("right", -4.0, 6.0), ("left", 6.0, -14.0), ("left", 4.0, 6.0), ("right", -6.0, -14.0))
 """Where the speed of a crossing may stand: alignment and shift in points, in order of preference."""
@@ -27,13 +33,14 @@ def plot_whirl_campbell(result: WhirlCampbell, ax: Axes | None = None, *, highes
 
     highest : end of the frequency axis [rad/s]; if not given, above the order lines and the lowest branches
     With ``ax`` only the frequencies are drawn.  Rings are critical speeds, small grey ones those that unbalance hardly
-    excites (backward or heavily damped).  Speeds at which a motion grows are shaded.
+    excites (backward circles, heavily damped, axial).  Speeds at which a vibration grows are shaded; paler where only
+    something grows without oscillating, a motor for one whose torque rises with its speed.
     """
     with house_look():
         if ax is not None:
             top = _top(result) if highest is None else highest
             _frequencies(given_or_new(ax), result, top)
-            ax.set_xlabel("speed of rotation [rad/s]")
+            ax.set_xlabel(f"speed of {_reference(result)} [rad/s]")
             legend_above(ax, columns=4)
             return ax
         figure = new_figure(7.2, 6.0)
@@ -42,17 +49,22 @@ def plot_whirl_campbell(result: WhirlCampbell, ax: Axes | None = None, *, highes
         hidden = _frequencies(above, result, top)
         _damping(below, result, top)
         rpm = above.secondary_xaxis("top", functions=other_unit(30.0 / np.pi))
-        rpm.set_xlabel("speed of rotation [rpm]")
+        rpm.set_xlabel(f"speed of {_reference(result)} [rpm]")
         hertz = above.secondary_yaxis("right", functions=other_unit(0.5 / np.pi))
         hertz.set_ylabel("damped frequency [Hz]")
         for scale, side in ((rpm, "top"), (hertz, "right")):
             scale.spines[side].set_visible(True)
         name = result.scene.name if result.scene is not None else "rotor line"
-        outside = "\n" + textwrap.fill(f"not drawn, higher: {', '.join(hidden)}", 100) if hidden else ""
+        outside = "\n" + textwrap.fill(f"not drawn, higher: {', '.join(hidden)}", 92) if hidden else ""
         figure.suptitle(f"{name}: Campbell diagram{outside}", x=0.01, ha="left", fontsize=10)
         figure.legend(*above.get_legend_handles_labels(), loc="outside lower left", ncols=4)
     first: Axes = above
     return first
+
+
+def _reference(result: WhirlCampbell) -> str:
+    """The shaft whose speed is on the axis."""
+    return "rotation" if result.scene is None else readable(reference_shaft(result.scene))
 
 
 def _top(result: WhirlCampbell) -> float:
@@ -73,22 +85,31 @@ def _frequencies(ax: Axes, result: WhirlCampbell, top: float) -> list[str]:
             continue
         ax.plot(result.speeds, branch, linewidth=1.6, label=None if word in named else word, **WHIRL_LOOK[word])
         named.add(word)
+    taken: list[_Box] = []
     for order, place, slope in zip(result.order_numbers, result.order_places, result.order_slopes, strict=True):
-        _order(ax, result, f"{order:g} x {readable(place)}", slope, top)
-    _criticals(ax, result, top)
+        taken += _order(ax, result, f"{order:g} x {readable(place)}", slope, top)
+    _criticals(ax, result, top, taken)
     ax.set_xlim(float(result.speeds[0]), float(result.speeds[-1]))
     ax.set_ylim(0.0, top)
     ax.set_ylabel("damped frequency [rad/s]")
     return hidden
 
 
-def _order(ax: Axes, result: WhirlCampbell, text: str, slope: float, top: float) -> None:
+def _scales(result: WhirlCampbell, top: float) -> tuple[float, float]:
+    """Points per rad/s across and upward in a picture of the usual size: good enough to tell whether two names meet."""
+    return 400.0 / float(result.speeds[-1] - result.speeds[0]), 230.0 / top
+
+
+def _order(ax: Axes, result: WhirlCampbell, text: str, slope: float, top: float) -> list[_Box]:
+    """Draw an order line; returns the box of its name."""
     line = slope * np.abs(result.speeds)
     ax.plot(result.speeds, line, color=GREY, linestyle="-", linewidth=0.8, zorder=1.5)
     inside = np.flatnonzero(line <= 0.97 * top)
     if not len(inside):
-        return
+        return []
     k = int(inside[-1])
+    across, upward = _scales(result, top)
+    right, low = float(result.speeds[k]) * across - 5.0, float(line[k]) * upward + 2.0
     ax.annotate(
         text,
         (float(result.speeds[k]), float(line[k])),
@@ -100,13 +121,12 @@ def _order(ax: Axes, result: WhirlCampbell, text: str, slope: float, top: float)
         color="#333333",
         bbox=PAPER,
     )
+    return [(right - 5.0 * len(text), right, low, low + 10.0)]
 
 
-def _criticals(ax: Axes, result: WhirlCampbell, top: float) -> None:
-    """A ring at each crossing, and its speed where that covers no other one."""
-    # points per unit of a picture of the usual size: good enough to tell whether two names meet
-    across, upward = 400.0 / float(result.speeds[-1] - result.speeds[0]), 230.0 / top
-    taken: list[tuple[float, float, float, float]] = []
+def _criticals(ax: Axes, result: WhirlCampbell, top: float, taken: list[_Box]) -> None:
+    """A ring at each crossing, and its speed where that covers no other name."""
+    across, upward = _scales(result, top)
     crossings = zip(result.critical_speeds.tolist(), result.critical_orders, result.critical_notes, strict=True)
     for speed, order, note in sorted(crossings, key=lambda item: item[2] != ""):
         frequency = result.order_slopes[order] * abs(speed)
@@ -119,7 +139,8 @@ def _criticals(ax: Axes, result: WhirlCampbell, top: float) -> None:
             left = speed * across + right - (5.3 * len(text) if side == "right" else 0.0)
             low = frequency * upward + up
             box = (left, left + 5.3 * len(text), low, low + 10.0)
-            if left >= result.speeds[0] * across and low >= 0.0 and not any(_meet(box, other) for other in taken):
+            inside = left >= result.speeds[0] * across and box[1] <= result.speeds[-1] * across and low >= 0.0
+            if inside and not any(_meet(box, other) for other in taken):
                 taken.append(box)
                 colour = GREY if note else "black"
                 ax.annotate(
@@ -136,10 +157,10 @@ def _criticals(ax: Axes, result: WhirlCampbell, top: float) -> None:
     if any(note == "" for note in result.critical_notes):
         ax.plot([], [], color="black", label="critical speed [rad/s]", **RING)
     if any(result.critical_notes):
-        ax.plot([], [], color=GREY, label="backward or heavily damped", **{**RING, "markersize": 4})
+        ax.plot([], [], color=GREY, label="hardly excited", **{**RING, "markersize": 4})
 
 
-def _meet(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> bool:
+def _meet(a: _Box, b: _Box) -> bool:
     return a[0] < b[1] and b[0] < a[1] and a[2] < b[3] and b[2] < a[3]
 
 
@@ -150,10 +171,14 @@ def _unstable(ax: Axes, result: WhirlCampbell) -> None:
     edges = np.concatenate([result.speeds[:1], 0.5 * (result.speeds[1:] + result.speeds[:-1]), result.speeds[-1:]])
     for speed in result.threshold_speeds:
         edges[1:-1][np.argmin(np.abs(edges[1:-1] - speed))] = speed
-    label: str | None = "unstable"
-    for k in np.flatnonzero(~result.stable):
-        ax.axvspan(float(edges[k]), float(edges[k + 1]), color=UNSTABLE, linewidth=0.0, zorder=0.4, label=label)
-        label = None
+    vibrates = np.any(result.damping_ratios < -STABLE, axis=1)
+    if "without oscillating" not in result.status:
+        vibrates[:] = True
+    for shown, colour, text in ((vibrates, UNSTABLE, "unstable"), (~vibrates, DRIFTING, "drifts off")):
+        label: str | None = text
+        for k in np.flatnonzero(~result.stable & shown):
+            ax.axvspan(float(edges[k]), float(edges[k + 1]), color=colour, linewidth=0.0, zorder=0.4, label=label)
+            label = None
 
 
 def _damping(ax: Axes, result: WhirlCampbell, top: float) -> None:
@@ -165,5 +190,5 @@ def _damping(ax: Axes, result: WhirlCampbell, top: float) -> None:
     largest = float(np.nanmax(np.abs(result.damping_ratios), initial=0.0))
     if largest < 1e-6:  # undamped: rounding shall not fill the picture
         ax.set_ylim(-0.01, 0.05)
-    ax.set_xlabel("speed of rotation [rad/s]")
+    ax.set_xlabel(f"speed of {_reference(result)} [rad/s]")
     ax.set_ylabel("damping ratio [1]")

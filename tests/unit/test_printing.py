@@ -35,7 +35,9 @@ def test_a_printed_result_names_scene_status_and_every_field_in_short_lines() ->
         assert lines[0] == f"{type(result).__name__} of 'harmonic drive train': {result.status}"
         shown = [line.split()[0] for line in lines[1:]]
         hidden = {"scene", "status", "settings", "versions"}
-        assert shown == [name for name in result.__dataclass_fields__ if name not in hidden]
+        names = [name for name in result.__dataclass_fields__ if name not in hidden]
+        own = [name for name in names if name in type(result).__annotations__]  # a run-up says its peaks before its channels
+        assert shown == own + [name for name in names if name not in own]
         assert all(len(line) < 120 for line in lines[1:] if " reason " not in line), type(result).__name__
         assert str(result) == repr(result)
 
