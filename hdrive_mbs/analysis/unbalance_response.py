@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -135,7 +136,9 @@ class UnbalanceResponse(Result):
 
     def influence(self, plane: str) -> UnbalanceResponse:
         """Influence coefficients: the response to 1 kg m at angle 0 at a plane alone [m/(kg m), rad/(kg m), N/(kg m)]."""
-        return self._again(self.speeds, {plane: (1.0, 0.0)}, rotors=False)
+        one = self._again(self.speeds, {plane: (1.0, 0.0)}, rotors=False)
+        # what 1 kg m would bend is of no interest: the notes on amplitudes are those of this response
+        return dataclasses.replace(one, status=self.status)
 
     def correction(self, planes: Sequence[str], places: Sequence[str], speed: float) -> dict[str, tuple[float, float]]:
         """Correction masses, plane -> (kg m, angle [rad]), that bring x and y of places at a speed nearest to zero.

@@ -36,6 +36,7 @@ def run(
     from hdrive_mbs.analysis.time_response import simulate
     from hdrive_mbs.plots import plot as draw
     from hdrive_mbs.plots import save_figure
+    from hdrive_mbs.plots.response import chosen_channels
 
     chosen = open_scene(scene, set_ or (), effect or ())
     taken = _solver(solver, tolerance, step, chosen.network().is_lateral)
@@ -64,7 +65,8 @@ def run(
         },
     )
     if json != "-":
-        _print(chosen.name, response.status, summary, dict(response.units))
+        few = chosen_channels(response) if chosen.network().is_lateral else None
+        _print(chosen.name, response.status, summary, dict(response.units), few)
         print(f"{response.steps} steps, {response.seconds:.3f} s CPU. Result: {result}. Picture: {pictures[0]}.")
     if response.status != "complete":
         raise typer.Exit(130)
@@ -86,7 +88,7 @@ def _solver(name: str, tolerance: float, step: float, is_rotor_line: bool) -> So
     return makers[name]()
 
 
-def _print(name: str, status: str, summary: dict[str, dict[str, float]], units: dict[str, str]) -> None:
-    shown = [channel for channel in summary if channel.endswith((".speed", ".torque", ".twist"))]
+def _print(name: str, status: str, summary: dict[str, dict[str, float]], units: dict[str, str], few: list[str] | None) -> None:
+    shown = few or [channel for channel in summary if channel.endswith((".speed", ".torque", ".twist"))]
     rows = [[f"{c} [{units[c]}]", *(summary[c][key] for key in ("min", "max", "mean", "final"))] for c in shown]
     print_table(f"{name}: {status}", ["channel", "min", "max", "mean", "final"], rows)

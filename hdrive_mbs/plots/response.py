@@ -10,12 +10,16 @@ from matplotlib.axes import Axes
 
 from hdrive_mbs.analysis.start_up import StartUp
 from hdrive_mbs.analysis.time_response import Response
+from hdrive_mbs.components.bearing import Bearing
+from hdrive_mbs.components.drive_torque import DriveTorque
 from hdrive_mbs.components.harmonic_drive import HarmonicDrive
 from hdrive_mbs.components.load import Load
 from hdrive_mbs.components.motor import Motor
+from hdrive_mbs.components.rotor import Rotor
 from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.plots.dispatch import plot
-from hdrive_mbs.plots.look import GREY, house_look, legend_above, new_figure, readable, style, unit_text
+from hdrive_mbs.plots.lengths import shown_unit
+from hdrive_mbs.plots.look import GREY, house_look, legend_above, new_figure, readable, style
 from hdrive_mbs.plots.thinning import thinned
 
 MOST_LINES = 4
@@ -23,7 +27,7 @@ MOST_LINES = 4
 
 MOST_PANELS = 5
 
-QUANTITIES = {"rad": "angle", "rad/s": "speed", "rad/s^2": "acceleration", "N m": "torque"}
+QUANTITIES = {"rad": "angle", "rad/s": "speed", "rad/s^2": "acceleration", "N m": "torque", "N": "force", "m": "displacement"}
 """What a panel with different quantities of one unit is called."""
 
 
@@ -100,7 +104,8 @@ def plot_start_up(
 
 
 def chosen_channels(result: Response) -> list[str]:
-    """Speeds of motors and machines, torques of motors, gears and machines; else all speeds and torques."""
+    """Speeds of motors and machines, torques of motors, gears and machines; of a rotor line also how far its rotors are
+    from the axis and the forces of its bearings; else all speeds and torques."""
     if result.scene is None:
         return [name for name in result.channels if name.endswith((".speed", ".torque"))][:8]
     parts = result.scene.parts
@@ -108,6 +113,12 @@ def chosen_channels(result: Response) -> list[str]:
     gears = [name for name, part in parts.items() if isinstance(part, HarmonicDrive)]
     wanted = [f"{name}.speed" for name in ends] + [f"{name}.torque" for name in [*gears, *ends]]
     found = [name for name in wanted if name in result]
+    rotors = [name for name, part in parts.items() if isinstance(part, Rotor) and f"{name}.radial" in result]
+    if rotors:
+        found = found or [f"{rotors[0]}.speed", *(f"{name}.torque" for name, part in parts.items() if isinstance(part, DriveTorque))]
+        bearings = [name for name, part in parts.items() if isinstance(part, Bearing)]
+        forces = [f"{name}.force_{axis}" for axis in "yx" for name in bearings]
+        return found + [f"{name}.radial" for name in rotors][:MOST_LINES] + [name for name in forces if name in result][:MOST_LINES]
     if any(name.endswith(".speed") for name in found):
         return found
     speeds = [name for name in result.channels if name.endswith(".speed")][:6]
@@ -132,12 +143,13 @@ def _panels(result: Response, channels: list[str], *, split: bool) -> list[list[
 
 
 def _panel(ax: Axes, result: Response, channels: list[str], span: np.ndarray) -> None:
+    unit = result.units[channels[0]]
+    factor, shown = shown_unit(unit, max(float(np.max(np.abs(result.values[name][span]))) for name in channels))
     for k, name in enumerate(channels):
         x, y = thinned(result.times[span], result.values[name][span])
-        ax.plot(x, y, label=readable(name), **style(k))
+        ax.plot(x, factor * y, label=readable(name), **style(k))
     quantities = {name.rpartition(".")[2] for name in channels}
-    unit = result.units[channels[0]]
     quantity = readable(quantities.pop()) if len(quantities) == 1 else QUANTITIES.get(unit, "value")
-    ax.set_ylabel(f"{quantity} [{unit_text(unit)}]")
+    ax.set_ylabel(f"{'distance' if quantity == 'radial' else quantity} [{shown}]")
     ax.margins(x=0.0)
     legend_above(ax)

@@ -457,6 +457,15 @@ def test_a_bearing_that_cannot_change_stays_with_a_warning_and_is_refused_by_nam
         with_bearings(full, "best")
 
 
+def test_data_that_the_simplified_section_cannot_hold_are_refused_with_the_name_of_the_bearing() -> None:
+    stepped = build().replacing({"section_1.diameter": 0.03})
+    with pytest.raises(hm.SceneError, match=r"'bearing_a': SimplifiedSection: left\.diameter = 0\.03 and right\.diameter"):
+        with_bearings(stepped, "simplified", ["bearing_a"])
+    assert any("bearing_a stays as it is: 'bearing_a': SimplifiedSection" in text for text in remarks(stepped, "simplified"))
+    kept = quiet(stepped, "simplified")
+    assert [type(kept.parts[name]) for name in ("bearing_a", "bearing_b")] == [hm.Bearing, SimplifiedSection]
+
+
 def test_an_effect_that_loses_its_place_is_named() -> None:
     scene = build().with_effect(hm.ViscousDrag(coefficient=1e-3), at="bearing_a", name="seal")
     with pytest.raises(hm.PlaceError, match="The effect 'seal' at 'bearing_a' has no place in this model of the bearings; remove it"):

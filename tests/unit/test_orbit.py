@@ -178,3 +178,17 @@ def test_the_picture_has_equal_scales_units_and_amplitudes_that_say_0_peak(chang
 def test_the_direction_of_a_run_backwards_is_that_of_its_spin() -> None:
     run = hm.run_up(jeffcott(constant(-5.0)), 0.7)
     assert hm.orbit(run, "disc", start=0.3).precession == "forward"
+
+
+def test_whirl_about_a_large_sag_fills_the_picture() -> None:
+    t = np.linspace(0.0, 1.0, 4001)
+    phi = 100.0 * t
+    whirl = 2e-6 * np.exp(1j * phi)
+    response = made(t, phi, np.full_like(t, 100.0), whirl - 80e-6j, 100.0j * whirl)
+    ax = hm.plot(hm.orbit(response, "disc"))
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    assert (left, right) == pytest.approx((-2.4, 2.4), rel=1e-3)
+    assert (low, high) == pytest.approx((-82.4, -77.6), rel=1e-3)
+    assert ax.get_ylabel() == "y, counted from the axis [\u00b5m]"
+    # without sag the axis is in the middle
+    assert hm.plot(hm.orbit(response, "disc", about="mean")).get_xlim() == pytest.approx((-2.16, 2.16), rel=1e-3)

@@ -140,6 +140,7 @@ def test_the_picture_shows_amplitude_0_peak_and_phase_over_speed(tmp_path: Path)
     assert np.nanmax(phases) <= 90.0
     png, _ = hm.save_figure(upper, tmp_path / "bode")
     assert png.stat().st_size > 5000
+    assert "below 5 % of the largest and not drawn: order 1 backward" in figure_of(upper).get_suptitle()
     own = Figure().add_subplot()
     assert hm.plot(hm.order_tracking(run(), "disc"), ax=own, tracks=["1 backward"]) is own
     with pytest.raises(hm.PlaceError, match="No track '3'"):
@@ -158,3 +159,14 @@ def test_bad_questions_are_refused_with_the_way_out() -> None:
         hm.order_tracking(response, "disc", revolutions=500.0)
     with pytest.raises(hm.PlaceError, match=r"No track '2 forward'\. This order tracking has: 1 forward, 1 backward"):
         hm.order_tracking(response, "disc").track(2.0)
+
+
+def test_an_order_spectrum_of_a_line_without_a_motor_counts_from_the_place() -> None:
+    found = hm.order_spectrum(run(), "disc.x", start=3.0)
+    assert found.against == "disc"
+    # x = Re[3e-6 e^(i phi)] is order 1 however the speed changes
+    assert found.peaks(1)[0] == pytest.approx((1.0, 3e-6), rel=1e-3)
+    ax = hm.plot(found)
+    assert ax.get_ylabel() == "amplitude, 0-peak [\u00b5m]"
+    with pytest.raises(hm.PlaceError, match=r"No channel 'motor\.angle'"):
+        hm.order_spectrum(run(), "disc.x", against="motor.angle")

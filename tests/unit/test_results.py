@@ -17,7 +17,7 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.analysis.result import FORMAT, Result, _checksum
-from hdrive_mbs.errors import FileFormatError, HdriveError
+from hdrive_mbs.errors import FileFormatError, HdriveError, unknown_place
 from tests.verification.scenes import train
 
 
@@ -341,3 +341,22 @@ def test_results_of_a_user_s_own_are_saved_and_loaded(tmp_path: Path) -> None:
     assert (again.flag, again.nothing, again.scene) == (True, None, None)
     with pytest.raises(NotImplementedError, match="GapOfThisTest has no table"):
         own.to_csv(tmp_path / "own.csv")
+
+
+def test_a_response_writes_the_channels_that_are_asked_for(tmp_path: Path) -> None:
+    run = response()
+    path = run.to_csv(tmp_path / "few.csv", ["motor.speed", "gear.torque"])
+    rows = path.read_text().splitlines()
+    assert rows[0] == "time [s],motor.speed [rad/s],gear.torque [N m]"
+    assert len(rows) == len(run.times) + 1
+    with pytest.raises(hm.PlaceError, match="No channel 'gear'"):
+        run.to_csv(tmp_path / "none.csv", ["gear"])
+
+
+def test_of_many_names_an_error_lists_those_that_are_spelt_alike() -> None:
+    names = [f"place_{k}.{axis}" for k in range(30) for axis in "xy"]
+    text = str(unknown_place("channel", "place_7.z", names, "This response"))
+    assert text.startswith("No channel 'place_7.z'. This response has 60, like it: place_7.")
+    assert text.count(",") < 20
+    assert "This response has 60, for instance: place_0.x" in str(unknown_place("channel", "???", names, "This response"))
+    assert str(unknown_place("place", "gaer", ["motor", "gear"])) == "No place 'gaer'. This scene has: motor, gear."

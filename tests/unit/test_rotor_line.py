@@ -119,6 +119,15 @@ def test_a_single_disc_on_a_bare_shaft_is_a_line_too() -> None:
     assert len(scene.network().bodies) == 18
 
 
+def test_stations_too_close_for_an_elastic_section_may_have_a_rigid_one() -> None:
+    stations = {"a": (0.0, RING), "d": (0.24999, DISC), "e": (0.25, DISC), "b": (0.6, RING)}
+    scene = made(stations=stations, rigid=[("d", "e")])
+    assert isinstance(scene.parts["section_2"], hm.RigidSection)
+    doubled = DISC.replacing(mass=2.0 * DISC.mass, polar_inertia=2.0 * DISC.polar_inertia, transverse_inertia=2.0 * DISC.transverse_inertia)
+    one_body = made(stations={"a": (0.0, RING), "d": (0.25, doubled), "b": (0.6, RING)})
+    np.testing.assert_allclose(frequencies(steady(scene, 0.0))[:6], frequencies(steady(one_body, 0.0))[:6], rtol=1e-3, atol=1e-3)
+
+
 # -- what is refused -----------------------------------------------------------------------------------------
 
 
@@ -137,6 +146,16 @@ def test_a_single_disc_on_a_bare_shaft_is_a_line_too() -> None:
             {"stations": {"a": (0.0, RING), "d": (0.25, DISC), "e": (0.25, DISC)}},
         ),
         (hm.SceneError, r"are both at z = 0\.25 m", {"stations": {"a": (0.0, RING), "d": (0.25, DISC), "e": (0.25 + 1e-12, DISC)}}),
+        (
+            hm.SceneError,
+            r"The section from 'd' to 'e' is 1e-05 m long, less than 0\.0005 of the shaft of 0\.25 m.*rigid=\[\('d', 'e'\)\], or attach",
+            {"stations": {"a": (0.0, RING), "d": (0.24999, DISC), "e": (0.25, DISC)}},
+        ),
+        (
+            hm.SceneError,
+            r"The section from a step at z = 0\.24999 m to 'd' is 1e-05 m long.*Move the step to the station",
+            {"material": HEAVY, "shaft": [(0.0, 0.24999, 0.03), (0.24999, 0.6, 0.02)]},
+        ),
         (hm.ParameterError, r"z of station 'a' = nan m: must be a finite number", {"stations": {"a": (math.nan, RING), "d": (0.2, DISC)}}),
         (hm.ParameterError, r"z of station 'a' = inf m: must be a finite number", {"stations": {"a": (math.inf, RING), "d": (0.2, DISC)}}),
         (hm.ParameterError, r"z of station 'a' = '0 m': must be a number, in m", {"stations": {"a": ("0 m", RING), "d": (0.2, DISC)}}),

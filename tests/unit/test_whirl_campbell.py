@@ -441,3 +441,17 @@ def test_a_motor_whose_torque_rises_with_the_speed_is_named_as_what_grows() -> N
     assert not result.stable.any()
     assert "a motion grows without oscillating" in result.status
     assert hm.whirl_modes(scene, 10.0).decay_rates.min() == pytest.approx(-0.3 / 2.0, rel=1e-3)
+
+
+def test_a_flat_backward_orbit_is_not_called_unexcited_and_an_axial_crossing_is() -> None:
+    # kx = 9e4, ky = 1.6e5: x at 150 rad/s, y at 200 rad/s, both driven by m e w^2 cos, m e w^2 sin; z at 100 rad/s
+    law = hm.LinearBearing.from_matrices(np.diag([9e4, 1.6e5, 4e4, 1e4, 1e4, 0.0]), 20.0 * np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]))
+    rotor = hm.Rotor(mass=4.0, polar_inertia=0.02, transverse_inertia=0.015, eccentricity=1e-5)
+    parts = {"rotor": rotor, "bearing": hm.Bearing(law=law)}
+    scene = hm.Scene(name="flat", parts=parts, connections=[("rotor", "bearing")])
+    result = hm.campbell(scene, np.linspace(50.0, 300.0, 11))
+    notes = {round(speed): note for speed, note in zip(result.critical_speeds, result.critical_notes, strict=True)}
+    assert (notes[100], notes[150], notes[200]) == ("axial", "", "")
+    driven = hm.unbalance_response(scene, np.linspace(50.0, 300.0, 251))
+    peaks = sorted(peak.speed for peak in driven.peaks if peak.place == "rotor")
+    assert peaks == pytest.approx([150.0, 200.0], rel=0.01)

@@ -202,6 +202,27 @@ def test_shapes_are_those_of_the_places_with_the_largest_amplitude_one() -> None
         assert (abs(z), abs(phi)) == pytest.approx((0.0, 0.0), abs=1e-12)
 
 
+def test_a_torsional_mode_is_scaled_by_its_spin_though_an_oil_film_couples_it_with_displacement() -> None:
+    law = hm.JournalBearing(
+        diameter=0.03, length=0.012, radial_clearance=60e-6, viscosity=0.03, axial_stiffness=1e5, tilt_stiffness=1e4, tilt_damping=1.0
+    )
+    parts = {
+        "rotor": hm.Rotor(mass=M, polar_inertia=JP, transverse_inertia=JT),
+        "bearing": hm.Bearing(law=law),
+        "spring": hm.Shaft(stiffness=500.0),
+        "wheel": hm.Inertia(inertia=0.03),
+        "weight": hm.Gravity(),
+    }
+    scene = hm.Scene(name="coupled", parts=parts, connections=[("rotor", "bearing"), ("rotor", "spring", "wheel")])
+    modes = hm.whirl_modes(scene, 300.0)
+    k = modes.whirl.index("torsional")
+    assert modes.frequencies[k] == pytest.approx(math.sqrt(500.0 * (1.0 / JP + 1.0 / 0.03)), rel=1e-3)
+    spins = dict(zip(modes.places, modes.shapes[k, :, 5], strict=True))
+    # momentum: Jp phi_rotor + J phi_wheel = 0
+    assert spins["rotor"] == pytest.approx(1.0, rel=1e-3)
+    assert spins["wheel"] == pytest.approx(-JP / 0.03, rel=1e-3)
+
+
 def test_places_of_one_rigid_body_move_as_one_body() -> None:
     parts = {
         "rotor": hm.Rotor(mass=M, polar_inertia=JP, transverse_inertia=JT),
