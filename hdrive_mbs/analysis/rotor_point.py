@@ -68,7 +68,8 @@ def rotor_point(scene: Scene, speed: float, *, lines: LineMatrices | None = None
         raise AnalysisError(
             f"No static deflection of {scene.name!r} at {speed:g} rad/s: {float(np.max(np.abs(force))):.3g} N or N m stay unbalanced "
             f"at {worst!r}. "
-            "Something has to hold every place laterally there; give weight (a Gravity part) to bearings that need a load."
+            "Something has to hold every place laterally there: bearings for each shaft, a motor's beyond a coupling too; give weight "
+            "(a Gravity part) to bearings that need a load."
         )
     found, turning_speeds = state(q)
     return RotorPoint(speed, found, turning_speeds, twist.states)

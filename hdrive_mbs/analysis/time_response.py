@@ -164,7 +164,9 @@ def simulate(
             raw = finer
     raw = _thinned(raw, sample_step) if estimate_error else raw
     settings = {"duration": duration, "solver": used.describe(), "initial_speed": initial_speed, "sample_step": sample_step}
-    return _response(scene, network, assembly, raw, settings | {"initial": dict(initial or {})}, error)
+    response = _response(scene, network, assembly, raw, settings | {"initial": dict(initial or {})}, error)
+    assembly.mbs.Reset()  # exudyn would keep the samples of its sensors
+    return response
 
 
 def channel_of(body: Body, kind: str) -> str:

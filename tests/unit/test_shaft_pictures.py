@@ -65,8 +65,7 @@ def curves(ax: Axes) -> list[np.ndarray]:
 
 def test_a_coupling_does_not_join_two_shafts_and_sections_do() -> None:
     places = ("armature", "hub", "a", "section_2.b", "disc", "b")
-    assert shaft_numbers(coupled(), places)[1:] == [1, 1, 1, 1, 1][: len(places) - 1]
-    assert shaft_numbers(coupled(), places)[0] == 0
+    assert shaft_numbers(coupled(), places) == [0, 1, 1, 1, 1, 1]
     assert shaft_numbers(None, places) == [0] * len(places)
 
 
@@ -103,9 +102,7 @@ def test_torsion_is_drawn_from_the_motor_on() -> None:
     modes = hm.whirl_modes(geared(), 300.0)
     order = [modes.places[k] for k in drive_order(modes.scene, modes.places)]
     turning = [place for place in order if not place.endswith(".housing")]
-    assert turning[:3] == ["motor", "gear.flexspline", "section_1.a"] or turning[:2] == ["motor", "gear.wave_generator"]
-    rest = [place for place in turning if not place.startswith(("motor", "gear"))]
-    assert rest == ["section_1.a", "a", "wheel", "b", "section_4.b"]
+    assert turning == ["motor", "gear.flexspline", "section_1.a", "a", "wheel", "b", "section_4.b"]
     assert drive_order(None, ("b", "a")) == [0, 1]
 
 
@@ -114,10 +111,11 @@ def test_bearing_loads_stand_below_the_deflection_line() -> None:
     assert_nothing_is_cut_off(ax)
     named = {text.get_text().partition("\n")[0]: text for text in ax.texts}
     assert set(named) == {"a", "b", "held"}
-    low, high = ax.get_ylim()
+    figure = figure_of(ax)
+    figure.draw_without_rendering()
     lowest = min(float(np.nanmin(curve[:, 1])) for curve in curves(ax))
-    highest_row = max(text.xyann[1] if hasattr(text, "xyann") else text.xy[1] for text in ax.texts)
-    assert low + (highest_row + 0.1) * (high - low) < lowest + 0.05 * (high - low)
+    foot = ax.transData.transform((0.0, lowest))[1]
+    assert all(text.get_window_extent().y1 < foot for text in ax.texts)
 
 
 def test_a_motor_that_does_not_hold_its_speed_is_shaded_apart_from_vibration() -> None:
