@@ -27,8 +27,8 @@ from scipy.interpolate import make_lsq_spline
 from scipy.linalg import expm
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.line_matrices import LineMatrices
-from hdrive_mbs.analysis.rotor_point import rotor_point
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
+from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 from hdrive_mbs.expression import Value
 from hdrive_mbs.tables import EDGE
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.bearing_models import BearingModelWarning, with_bearings
+from hdrive_mbs.analysis.whirl.bearing_models import BearingModelWarning, with_bearings
 from models.two_rotor_line import build
 
 FULL, MERGED, SIMPLIFIED, IMPROVED = "full", "merged", "simplified", "improved"

@@ -14,7 +14,7 @@ from benchmarks.bearings.run_up import ROTORS
 from benchmarks.bearings.steady import ABOVE, BELOW, BETWEEN
 from benchmarks.bearings.sweep import CHEAPER, valid_from
 from benchmarks.stiffness_laws.claim import Claim, judged
-from hdrive_mbs.analysis.bearing_models import LIMITS
+from hdrive_mbs.analysis.whirl.bearing_models import LIMITS
 
 FOUNDATION = 6e6
 """Stiffness of each foundation of M-REF [N/m]."""

@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.line_matrices import LineMatrices
-from hdrive_mbs.analysis.rotor_point import rotor_point
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
+from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 
 ComplexArray = npt.NDArray[np.complex128]
 

@@ -13,12 +13,12 @@ import numpy.typing as npt
 import hdrive_mbs as hm
 from benchmarks.bearings.cases import FINAL
 from benchmarks.bearings.run_up import ROTORS
-from hdrive_mbs.analysis.line_matrices import LineMatrices
-from hdrive_mbs.analysis.response_peaks import ResponsePeak
-from hdrive_mbs.analysis.rotor_point import rotor_point
-from hdrive_mbs.analysis.synchronous_whirl import critical_speeds
-from hdrive_mbs.analysis.unbalance_response import unbalance_response
-from hdrive_mbs.analysis.whirl_campbell import WhirlCampbell, campbell
+from hdrive_mbs.analysis.unbalance.response_peaks import ResponsePeak
+from hdrive_mbs.analysis.unbalance.synchronous_whirl import critical_speeds
+from hdrive_mbs.analysis.unbalance.unbalance_response import unbalance_response
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
+from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
+from hdrive_mbs.analysis.whirl.whirl_campbell import WhirlCampbell, campbell
 
 FloatArray = npt.NDArray[np.float64]
 

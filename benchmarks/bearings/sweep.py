@@ -18,8 +18,8 @@ import hdrive_mbs as hm
 from benchmarks.bearings.cases import BEARINGS, FINAL, FULL, IMPROVED, M_REF, M_REF2, MERGED, SIMPLIFIED, Case, with_model
 from benchmarks.bearings.run_up import ROTORS
 from benchmarks.bearings.steady import forward_criticals
-from hdrive_mbs.analysis.response_peaks import ResponsePeak
-from hdrive_mbs.analysis.unbalance_response import unbalance_response
+from hdrive_mbs.analysis.unbalance.response_peaks import ResponsePeak
+from hdrive_mbs.analysis.unbalance.unbalance_response import unbalance_response
 
 FloatArray = npt.NDArray[np.float64]
 

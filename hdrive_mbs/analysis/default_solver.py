@@ -7,8 +7,8 @@ import math
 import numpy as np
 from scipy.linalg import eigh
 
-from hdrive_mbs.analysis.line_matrices import LineMatrices
-from hdrive_mbs.analysis.run_up_step import fastest_speeds
+from hdrive_mbs.analysis.run_up.run_up_step import fastest_speeds
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 from hdrive_mbs.engine.solvers import DormandPrince, Solver, Trapezoidal
 from hdrive_mbs.network.network import Network
 

@@ -195,7 +195,7 @@ def _subclasses(kind: type[Result]) -> list[type[Result]]:
 
     from hdrive_mbs import analysis
 
-    for module in pkgutil.iter_modules(analysis.__path__, "hdrive_mbs.analysis."):
+    for module in pkgutil.walk_packages(analysis.__path__, "hdrive_mbs.analysis."):
         importlib.import_module(module.name)
     found: list[type[Result]] = []
     stack = [kind]

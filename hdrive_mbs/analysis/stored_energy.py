@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from hdrive_mbs.analysis.elastic_law import ElasticLaw
+from hdrive_mbs.analysis.drive_train.elastic_law import ElasticLaw
 from hdrive_mbs.analysis.time_response import read_over
 from hdrive_mbs.expression import Expression, TraceError, Value, derivative, evaluate, record, trace, variable, variables
 from hdrive_mbs.network.coupling import Coupling

@@ -12,7 +12,7 @@ from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.cli.speeds import parse_orders, parse_speeds
 
 if TYPE_CHECKING:
-    from hdrive_mbs.analysis.whirl_campbell import WhirlCampbell
+    from hdrive_mbs.analysis.whirl.whirl_campbell import WhirlCampbell
 
 
 def campbell(
@@ -30,7 +30,7 @@ def campbell(
     json: JsonFile = None,
 ) -> None:
     """Damped frequencies, damping and whirl over speed; critical speeds and stability thresholds."""
-    from hdrive_mbs.analysis.whirl_campbell import campbell as analyse
+    from hdrive_mbs.analysis.whirl.whirl_campbell import campbell as analyse
 
     chosen = open_scene(scene, set_ or (), effect or ())
     result = analyse(chosen, parse_speeds("--speeds", speeds), parse_orders("--orders", orders), count=count)

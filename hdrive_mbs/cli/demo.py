@@ -27,11 +27,11 @@ def demo(
     json: JsonFile = None,
 ) -> None:
     """Start a motor - harmonic drive - machine train, find its modes, torsion and critical speeds."""
-    from hdrive_mbs.analysis.campbell import torsional_campbell
-    from hdrive_mbs.analysis.modes import modes
+    from hdrive_mbs.analysis.drive_train.campbell import torsional_campbell
+    from hdrive_mbs.analysis.drive_train.modes import modes
+    from hdrive_mbs.analysis.drive_train.torsion import torsion
     from hdrive_mbs.analysis.result import Result
     from hdrive_mbs.analysis.time_response import simulate
-    from hdrive_mbs.analysis.torsion import torsion
     from hdrive_mbs.effects.kinematic_error import KinematicError
     from hdrive_mbs.plots import plot, save_figure
     from hdrive_mbs.scene_file import save_scene

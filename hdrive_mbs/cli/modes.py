@@ -28,7 +28,7 @@ def modes(
     json: JsonFile = None,
 ) -> None:
     """Natural frequencies, damping ratios and mode shapes of the linearised scene."""
-    from hdrive_mbs.analysis.modes import modes as analyse
+    from hdrive_mbs.analysis.drive_train.modes import modes as analyse
 
     chosen = open_scene(scene, set_ or (), effect or ())
     if chosen.network().is_lateral:
@@ -70,7 +70,7 @@ def modes(
 
 def _whirl_modes(scene: Scene, torque: float | None, speed: float | None, count: int, out: Path | None, json: str | None) -> None:
     from hdrive_mbs.analysis.operating_point import with_load
-    from hdrive_mbs.analysis.whirl_modes import whirl_modes
+    from hdrive_mbs.analysis.whirl.whirl_modes import whirl_modes
 
     result = whirl_modes(scene if torque is None else with_load(scene, torque), speed or 0.0, count=count)
     if out is not None:

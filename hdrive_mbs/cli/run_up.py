@@ -13,7 +13,7 @@ from hdrive_mbs.cli.output import print_table, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 
 if TYPE_CHECKING:
-    from hdrive_mbs.analysis.run_up import RunUp
+    from hdrive_mbs.analysis.run_up.run_up import RunUp
 
 
 def run_up(
@@ -31,7 +31,7 @@ def run_up(
     json: JsonFile = None,
 ) -> None:
     """Peak amplitude of each rotor and its speed, and the final speed; choose a bearing model with --set bearing=improved."""
-    from hdrive_mbs.analysis import run_up as analysis
+    from hdrive_mbs.analysis.run_up import run_up as analysis
     from hdrive_mbs.engine.solvers import Trapezoidal
     from hdrive_mbs.plots import plot, save_figure
 

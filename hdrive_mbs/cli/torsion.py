@@ -24,7 +24,7 @@ def torsion(
     json: JsonFile = None,
 ) -> None:
     """Torque against angle with the input held, as a gear catalogue measures it."""
-    from hdrive_mbs.analysis.torsion import torsion as analyse
+    from hdrive_mbs.analysis.drive_train.torsion import torsion as analyse
 
     chosen = open_scene(scene, set_ or (), effect or ())
     wanted = None if torques is None else _numbers(torques)

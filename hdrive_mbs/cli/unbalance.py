@@ -14,7 +14,7 @@ from hdrive_mbs.cli.speeds import parse_speeds
 from hdrive_mbs.errors import ParameterError, unknown_place
 
 if TYPE_CHECKING:
-    from hdrive_mbs.analysis.unbalance_response import UnbalanceResponse
+    from hdrive_mbs.analysis.unbalance.unbalance_response import UnbalanceResponse
 
 
 def unbalance(
@@ -33,7 +33,7 @@ def unbalance(
     json: JsonFile = None,
 ) -> None:
     """Amplitude and phase of steady whirl over speed; every amplitude is 0-peak."""
-    from hdrive_mbs.analysis.unbalance_response import unbalance_response
+    from hdrive_mbs.analysis.unbalance.unbalance_response import unbalance_response
 
     chosen = open_scene(scene, set_ or (), effect or ())
     grid = parse_speeds("--speeds", speeds)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from hdrive_mbs.analysis.campbell import Campbell
+from hdrive_mbs.analysis.drive_train.campbell import Campbell
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, number, other_unit, readable, style
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
-from hdrive_mbs.analysis.critical_map import CriticalSpeedMap
+from hdrive_mbs.analysis.whirl.critical_map import CriticalSpeedMap
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import COLOURS, GREY, given_or_new, house_look, legend_above, number, other_unit, readable
 

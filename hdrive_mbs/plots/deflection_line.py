@@ -7,7 +7,7 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from scipy.interpolate import CubicHermiteSpline
 
-from hdrive_mbs.analysis.deflection_line import StaticDeflection
+from hdrive_mbs.analysis.unbalance.deflection_line import StaticDeflection
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, readable, style
 from hdrive_mbs.plots.shafts import shaft_numbers

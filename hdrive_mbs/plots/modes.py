@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 
-from hdrive_mbs.analysis.modes import Modes
+from hdrive_mbs.analysis.drive_train.modes import Modes
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.network.elements import Connection
 from hdrive_mbs.plots.dispatch import plot

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
-from hdrive_mbs.analysis.orbit import Orbit
+from hdrive_mbs.analysis.signals.orbit import Orbit
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.lengths import shown_unit
 from hdrive_mbs.plots.look import COLOURS, given_or_new, house_look, legend_above, number, readable

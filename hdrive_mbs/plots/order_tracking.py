@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 
-from hdrive_mbs.analysis.order_tracking import OrderTracking
+from hdrive_mbs.analysis.signals.order_tracking import OrderTracking
 from hdrive_mbs.errors import unknown_place
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.lengths import shown_unit

@@ -7,7 +7,7 @@ import textwrap
 import numpy as np
 from matplotlib.axes import Axes
 
-from hdrive_mbs.analysis.reduction import Reduction
+from hdrive_mbs.analysis.drive_train.reduction import Reduction
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, number, readable, style
 

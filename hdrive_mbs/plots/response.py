@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
-from hdrive_mbs.analysis.start_up import StartUp
+from hdrive_mbs.analysis.drive_train.start_up import StartUp
 from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.components.bearing import Bearing
 from hdrive_mbs.components.drive_torque import DriveTorque

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from hdrive_mbs.analysis.rotor_places import spin_ratios
-from hdrive_mbs.analysis.run_up import RunUp
+from hdrive_mbs.analysis.run_up.run_up import RunUp
+from hdrive_mbs.analysis.whirl.rotor_places import spin_ratios
 from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.lengths import shown_unit

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 
-from hdrive_mbs.analysis.order_spectrum import OrderSpectrum
-from hdrive_mbs.analysis.spectrum import Spectrum
+from hdrive_mbs.analysis.signals.order_spectrum import OrderSpectrum
+from hdrive_mbs.analysis.signals.spectrum import Spectrum
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.lengths import shown_unit
 from hdrive_mbs.plots.look import COLOURS, given_or_new, house_look, readable

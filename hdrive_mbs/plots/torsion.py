@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from hdrive_mbs.analysis.torsion import TorsionCurve
+from hdrive_mbs.analysis.drive_train.torsion import TorsionCurve
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, number, other_unit, readable, style
 

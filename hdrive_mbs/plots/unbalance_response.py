@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 
-from hdrive_mbs.analysis.unbalance_response import UnbalanceResponse
+from hdrive_mbs.analysis.unbalance.unbalance_response import UnbalanceResponse
 from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.lengths import shown_unit

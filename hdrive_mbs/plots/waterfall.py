@@ -10,8 +10,8 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 
-from hdrive_mbs.analysis.spectrogram import Spectrogram
-from hdrive_mbs.analysis.waterfall import Waterfall
+from hdrive_mbs.analysis.signals.spectrogram import Spectrogram
+from hdrive_mbs.analysis.signals.waterfall import Waterfall
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.lengths import shown_unit

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from hdrive_mbs.analysis.rotor_places import reference_shaft
-from hdrive_mbs.analysis.whirl_campbell import WhirlCampbell
-from hdrive_mbs.analysis.whirl_modes import STABLE
+from hdrive_mbs.analysis.whirl.rotor_places import reference_shaft
+from hdrive_mbs.analysis.whirl.whirl_campbell import WhirlCampbell
+from hdrive_mbs.analysis.whirl.whirl_modes import STABLE
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, new_figure, number, other_unit, readable
 from hdrive_mbs.plots.whirl_look import WHIRL_LOOK

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 
-from hdrive_mbs.analysis.station_shapes import DIRECTIONS
-from hdrive_mbs.analysis.whirl_modes import WhirlModes
+from hdrive_mbs.analysis.whirl.station_shapes import DIRECTIONS
+from hdrive_mbs.analysis.whirl.whirl_modes import WhirlModes
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import GREY, house_look, legend_above, new_figure, number, readable, style

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.line_matrices import LineMatrices, LineSystem
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices, LineSystem
 
 FloatArray = npt.NDArray[np.float64]
 E, G, STEEL = 2.1e11, 8.1e10, 7800.0

@@ -12,10 +12,10 @@ import numpy.typing as npt
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.bearing_models import BearingModelWarning, with_bearings
-from hdrive_mbs.analysis.line_matrices import LineMatrices
-from hdrive_mbs.analysis.mode_shifts import mode_shifts
-from hdrive_mbs.analysis.rotor_point import rotor_point
+from hdrive_mbs.analysis.whirl.bearing_models import BearingModelWarning, with_bearings
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
+from hdrive_mbs.analysis.whirl.mode_shifts import mode_shifts
+from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 from hdrive_mbs.bearings.law import BearingLaw, RelativeMotion
 from hdrive_mbs.bearings.looked_at import directions_looked_at
 from hdrive_mbs.components.improved_section import ImprovedSection

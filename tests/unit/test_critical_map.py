@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.critical_map import CriticalSpeedMap
-from hdrive_mbs.analysis.line_matrices import LineMatrices
-from hdrive_mbs.analysis.rotor_point import rotor_point
+from hdrive_mbs.analysis.whirl.critical_map import CriticalSpeedMap
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
+from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 from hdrive_mbs.errors import AnalysisError, ParameterError, PlaceError
 from models.two_rotor_line import build
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.line_matrices import LineMatrices
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 
 MASS, STIFFNESS = 3.0, 2e5
 

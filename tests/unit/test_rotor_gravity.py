@@ -9,7 +9,7 @@ import pytest
 from scipy.special import ellipk
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.rotor_point import rotor_point
+from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 from tests.unit.rotor_pieces import (
     DISC,
     EARTH,

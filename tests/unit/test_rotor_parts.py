@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.line_matrices import LineMatrices, LineSystem
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices, LineSystem
 from hdrive_mbs.engine.assembly import assemble
 from hdrive_mbs.engine.linearisation import linearise
 from tests.unit.rotor_pieces import (

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.rotor_point import rotor_point
+from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 
 BALLS = hm.BallBearing(
     balls=8,

@@ -13,11 +13,11 @@ import pytest
 from matplotlib.figure import Figure
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.line_matrices import LineMatrices
-from hdrive_mbs.analysis.rest_positions import FreeLine, RestPositions, rest_position
-from hdrive_mbs.analysis.run_up_step import choose_step, fastest_speeds
-from hdrive_mbs.analysis.speed_peaks import Whirl, speed_peaks
-from hdrive_mbs.analysis.synchronous_whirl import CriticalSpeed, critical_speeds
+from hdrive_mbs.analysis.run_up.rest_positions import FreeLine, RestPositions, rest_position
+from hdrive_mbs.analysis.run_up.run_up_step import choose_step, fastest_speeds
+from hdrive_mbs.analysis.run_up.speed_peaks import Whirl, speed_peaks
+from hdrive_mbs.analysis.unbalance.synchronous_whirl import CriticalSpeed, critical_speeds
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 from models.two_rotor_line import build
 from tests.unit.picture_checks import assert_nothing_is_cut_off
 from tests.unit.rotor_scenes import CRITICAL, DAMPING, ECCENTRICITY, MASS, POLAR, STIFFNESS, constant, holding, jeffcott, steady, support

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.windows import WINDOWS, Window
+from hdrive_mbs.analysis.signals.windows import WINDOWS, Window
 
 
 def history(function: Callable[[np.ndarray], np.ndarray], times: np.ndarray, slope: Callable[[np.ndarray], np.ndarray] | None = None):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.deflection_line import StaticDeflection
+from hdrive_mbs.analysis.unbalance.deflection_line import StaticDeflection
 from hdrive_mbs.errors import AnalysisError, ParameterError, PlaceError
 from models.two_rotor_line import build
 

@@ -17,10 +17,10 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis import speed_line
-from hdrive_mbs.analysis.speed_line import SpeedLine
-from hdrive_mbs.analysis.unbalance_response import UnbalanceResponse
-from hdrive_mbs.analysis.whirl_orbit import WhirlOrbit, lag
+from hdrive_mbs.analysis.unbalance import speed_line
+from hdrive_mbs.analysis.unbalance.speed_line import SpeedLine
+from hdrive_mbs.analysis.unbalance.unbalance_response import UnbalanceResponse
+from hdrive_mbs.analysis.unbalance.whirl_orbit import WhirlOrbit, lag
 from hdrive_mbs.errors import AnalysisError, ParameterError, PlaceError
 from models.two_rotor_line import build
 
@@ -453,8 +453,8 @@ def test_damping_that_turns_with_the_shaft_is_found_unstable_in_short_and_long_l
 
 
 def growth(scene: hm.Scene, speed: float) -> float:
-    from hdrive_mbs.analysis.line_matrices import LineMatrices
-    from hdrive_mbs.analysis.rotor_point import rotor_point
+    from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
+    from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 
     lines = LineMatrices(scene.network())
     point = rotor_point(scene, speed, lines=lines)
@@ -490,8 +490,8 @@ def test_finer_shafts_converge_to_one_response() -> None:
 
 
 def test_matrices_of_a_linear_line_are_those_of_each_speed() -> None:
-    from hdrive_mbs.analysis.line_matrices import LineMatrices
-    from hdrive_mbs.analysis.rotor_point import rotor_point
+    from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
+    from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 
     scene = unlike_line()
     line = SpeedLine.over(scene, np.array([0.0, 500.0, 1000.0]), ["rotor_1.x", "rotor_1.y"])

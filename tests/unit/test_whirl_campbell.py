@@ -11,12 +11,12 @@ import pytest
 from scipy.optimize import brentq
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.crossings import zeros
-from hdrive_mbs.analysis.line_block import BlockModel, line_blocks
-from hdrive_mbs.analysis.mode_tracking import ModeTracker, follow
-from hdrive_mbs.analysis.reduced_basis import reduced_model
-from hdrive_mbs.analysis.spinning_line import SpinningLine
-from hdrive_mbs.analysis.whirl_kind import WhirlKinds
+from hdrive_mbs.analysis.whirl.crossings import zeros
+from hdrive_mbs.analysis.whirl.line_block import BlockModel, line_blocks
+from hdrive_mbs.analysis.whirl.mode_tracking import ModeTracker, follow
+from hdrive_mbs.analysis.whirl.reduced_basis import reduced_model
+from hdrive_mbs.analysis.whirl.spinning_line import SpinningLine
+from hdrive_mbs.analysis.whirl.whirl_kind import WhirlKinds
 from hdrive_mbs.errors import AnalysisError, HdriveError, ParameterError, PlaceError
 from models.two_rotor_line import build
 from tests.verification.scenes import chain

@@ -12,7 +12,7 @@ import pytest
 from scipy.linalg import eig
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.line_matrices import LineMatrices
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 from models.two_rotor_line import build
 from tests.verification import reference_rotor_values as values
 from tests.verification.reference_rotors import Line, full, reference_line, simplified

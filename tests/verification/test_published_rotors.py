@@ -16,7 +16,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.line_matrices import LineMatrices
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 from hdrive_mbs.engine.assembly import assemble
 from hdrive_mbs.engine.linearisation import linearise
 from tests.verification.whirl_scenes import (

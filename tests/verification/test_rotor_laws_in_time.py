@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.line_matrices import LineMatrices
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 from hdrive_mbs.engine.assembly import assemble
 from hdrive_mbs.engine.linearisation import linearise
 from tests.contracts.test_bearings import laws_of_package

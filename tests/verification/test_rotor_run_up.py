@@ -13,8 +13,8 @@ from scipy.integrate import cumulative_trapezoid
 from scipy.linalg import eig
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.line_matrices import LineMatrices, LineSystem
-from hdrive_mbs.analysis.rotor_point import rotor_point
+from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices, LineSystem
+from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 from hdrive_mbs.network.coupling import Gyroscope
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Network

@@ -1,0 +1,1 @@
+"""Torsional analyses of drive trains."""

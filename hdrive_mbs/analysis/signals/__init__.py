@@ -1,0 +1,1 @@
+"""What is read from histories: spectra, orders, orbits."""

@@ -1,0 +1,1 @@
+"""Steady response of rotor lines to unbalance and weight."""

@@ -1,0 +1,1 @@
+"""Linearised rotor lines: whirl, Campbell diagrams, critical speeds, models of bearings."""
