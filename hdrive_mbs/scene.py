@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
@@ -13,6 +14,7 @@ from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import HdriveError, LawError, PlaceError, SceneError, unknown_place
 from hdrive_mbs.network.claims import check_claims
 from hdrive_mbs.network.network import Network
+from hdrive_mbs.part_table import part_table
 from hdrive_mbs.quantities import FreeParameter, snake_case
 from hdrive_mbs.topology import GROUND, check_connections, resolve_flanges, start_draft
 
@@ -127,24 +129,21 @@ class Scene:
         ``scene.replacing({"motor.inertia": 2e-3, "gear.stiffness": law})`` or ``scene.replacing(motor=part)``.
         Paths of effects begin with the effect's name.  Raises PlaceError for an unknown path.
         """
-        result = self
+        changed: dict[str, Component] = dict(self.parts)
+        effects = {placed.name: placed for placed in self.effects}
         for path, value in {**(changes or {}), **parts}.items():
-            result = result._setting(path, value)
-        return result
-
-    def _setting(self, path: str, value: Any) -> Scene:
-        head, _, rest = path.partition(".")
-        try:
-            if head in self.parts:
-                part = self.parts[head].setting(rest, value) if rest else value
-                return replace(self, parts={**self.parts, head: part})
-            placed = self.effect(head)
-        except PlaceError as error:
-            near = difflib.get_close_matches(path, list(self.parameters()), n=1)
-            hint = f" Did you mean {near[0]!r}?" if near else ""
-            raise PlaceError(f"{path!r}: {error}{hint}") from None
-        effect = placed.effect.setting(rest, value) if rest else value
-        return replace(self, effects=tuple(replace(e, effect=effect) if e.name == head else e for e in self.effects))
+            head, _, rest = path.partition(".")
+            try:
+                if head in changed:
+                    changed[head] = changed[head].setting(rest, value) if rest else value
+                else:
+                    placed = effects.get(head) or self.effect(head)
+                    effects[head] = replace(placed, effect=placed.effect.setting(rest, value) if rest else value)
+            except PlaceError as error:
+                near = difflib.get_close_matches(path, list(self.parameters()), n=1)
+                hint = f" Did you mean {near[0]!r}?" if near else ""
+                raise PlaceError(f"{path!r}: {error}{hint}") from None
+        return replace(self, parts=changed, effects=tuple(effects.values()))
 
     # -- questions -------------------------------------------------------------------------------
     def effect(self, name: str) -> PlacedEffect:
@@ -196,8 +195,10 @@ class Scene:
 def describe(scene: Scene) -> str:
     """The scene in readable lines: parts with units, connections, effects, senses of rotation."""
     lines = [f"Scene {scene.name!r}", "  parts"]
+    is_lateral = any(flange.lateral for part in scene.parts.values() for flange in part.flanges())
     width = max(len(name) for name in scene.parts)
-    lines += [f"    {name:<{width}}  {part.describe()}" for name, part in scene.parts.items()]
+    plain = [f"{name:<{width}}  {part.describe()}" for name, part in scene.parts.items()]
+    lines += [f"    {line}" for line in (part_table(scene.parts) if is_lateral else plain)]
     lines.append("  connections")
     lines += [f"    {' - '.join(chain)}" for chain in scene.connections]
     if scene.effects:
@@ -209,6 +210,9 @@ def describe(scene: Scene) -> str:
         return "\n".join([*lines, f"  it cannot be solved: {error}"])
     width = max(len(body.name) for body in bodies)
     lines.append("  turns per turn of the motor")
+    if is_lateral:
+        alike = itertools.groupby(bodies, key=lambda body: f"{body.ratio:+.6g}")
+        return "\n".join([*lines, *(f"    {ratio}  {', '.join(body.name for body in group)}" for ratio, group in alike)])
     lines += [f"    {body.name:<{width}}  {body.ratio:+.6g}" for body in bodies]
     return "\n".join(lines)
 

@@ -26,14 +26,14 @@ def resolve_flanges(parts: Mapping[str, Component]) -> dict[str, Flange]:
     return {_path(name, flange): flange for name, part in parts.items() for flange in part.flanges()}
 
 
-def _end(place: str, parts: Mapping[str, Component], leaving: bool) -> str:
+def _end(place: str, parts: Mapping[str, Component], flanges: Mapping[str, Flange], leaving: bool) -> str:
     """Flange path of a place in a chain, on the side towards its neighbour."""
     if place == GROUND:
         return GROUND
-    if place in resolve_flanges(parts):
+    if place in flanges:
         return place
     if place not in parts:
-        raise unknown_place("place", place, [*parts, *(p for p in resolve_flanges(parts) if "." in p), GROUND])
+        raise unknown_place("place", place, [*parts, *(p for p in flanges if "." in p), GROUND])
     part = parts[place]
     flange = part.exit if leaving else part.entry
     if not part.flanges():
@@ -44,13 +44,14 @@ def _end(place: str, parts: Mapping[str, Component], leaving: bool) -> str:
 def joints(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> list[tuple[str, str]]:
     """Pairs of flange paths that are rigidly joined."""
     pairs = []
+    flanges = resolve_flanges(parts)
     for chain in connections:
         if len(chain) < 2:
             raise SceneError(f"Connection {tuple(chain)}: a connection names at least two places.")
         for left, right in itertools.pairwise(chain):
-            if left == right and left in resolve_flanges(parts):
+            if left == right and left in flanges:
                 raise SceneError(f"Connection {tuple(chain)} joins {left!r} to itself; name each place once.")
-            pairs.append((_end(left, parts, leaving=True), _end(right, parts, leaving=False)))
+            pairs.append((_end(left, parts, flanges, leaving=True), _end(right, parts, flanges, leaving=False)))
     return pairs
 
 

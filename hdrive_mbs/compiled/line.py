@@ -1,7 +1,8 @@
-"""A network as machine code: many runs of the same equations with other numbers."""
+"""Networks as machine code: many runs of the same equations with other numbers."""
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,14 +10,19 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.compiled.machine import machine, pointer
-from hdrive_mbs.compiled.program import Program, program
-from hdrive_mbs.errors import ParameterError, SimulationError, unknown_place
+from hdrive_mbs.compiled.equations import accelerations
+from hdrive_mbs.compiled.lanes import run_lanes
+from hdrive_mbs.compiled.machine import processor
+from hdrive_mbs.compiled.program import program
+from hdrive_mbs.compiled.readings import readings
+from hdrive_mbs.compiled.structure import Structure
+from hdrive_mbs.errors import ParameterError, SimulationError
 from hdrive_mbs.expression import Expression, Value, record, trace, variable
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Network
 
 FloatArray = npt.NDArray[np.float64]
+Values = Mapping[str, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,43 +34,37 @@ class CompiledRun:
 
 
 class CompiledLine:
-    """The equations of a network and some of its channels, compiled.
+    """The equations of a network and some of its channels, ready to be run as machine code.
 
-    A network whose laws have the same form as an earlier one's, with other numbers, takes the code that is there:
-    making this object then costs some milliseconds, a run some ten nanoseconds per operation.
+    A network whose laws have the same form as an earlier one's, with other numbers, takes the code that is there.
+    :func:`run_many` runs many such lines at once.
 
     channels : names of what a run returns (angles, speeds, torques, readings; accelerations are rates of speeds)
 
-    Raises TraceError for a law that cannot be recorded, ParameterError for a rotor line, whose masses depend on its
-    state: those run on the engine.
+    Raises TraceError for a law that cannot be recorded, and ParameterError for a network whose equations cannot be compiled.
     """
 
     def __init__(self, network: Network, channels: Sequence[str]) -> None:
-        if network.is_coupled:
-            raise ParameterError("A line with rotors or matrices of mass cannot be compiled; simulate it on the engine.")
         self.network, self.channels = network, tuple(channels)
-        self._names = [body.name for body in network.bodies]
+        self.names = tuple(body.name for body in network.bodies)
         states = [state.name for state in network.states]
-        variables = ["t", *(f"angle:{name}" for name in self._names), *(f"speed:{name}" for name in self._names)]
+        variables = ["t", *(f"angle:{name}" for name in self.names), *(f"speed:{name}" for name in self.names)]
         variables += [f"state:{name}" for name in states]
-        known = {channel.name: channel for channel in network.channels}
-        for name in self.channels:
-            if name not in known:
-                raise unknown_place("channel", name, known, "This scene")
-
-        def rates(moment: Moment) -> list[Value]:
-            found = network.accelerations(moment)
-            return [moment.speed(name) for name in self._names] + [found[name] for name in (*self._names, *states)]
-
         moment = self._recording()
-        self._rates = program(_recorded(lambda: rates(moment)), variables)
-        self._read = program(_recorded(lambda: [known[name].read(moment) for name in self.channels]), variables)
-        self._machine = machine(self._rates.structure, self._read.structure)
+        found = functools.cache(lambda: accelerations(network, moment))
+        read = _recorded(lambda: readings(network, self.channels, moment, found))
+        rates = _recorded(lambda: [moment.speed(n) for n in self.names] + [found()[name] for name in (*self.names, *states)])
+        self.program = program(rates, read, variables)
+
+    @property
+    def structure(self) -> Structure:
+        """What the equations compute, without the numbers: lines with equal structures share one code."""
+        return self.program.structure
 
     def _recording(self) -> Moment:
         time = variable("t")
-        angles = {name: variable(f"angle:{name}") for name in self._names}
-        speeds = {name: variable(f"speed:{name}") for name in self._names}
+        angles = {name: variable(f"angle:{name}") for name in self.names}
+        speeds = {name: variable(f"speed:{name}") for name in self.names}
         states = {state.name: variable(f"state:{state.name}") for state in self.network.states}
         return self.network.moment(time, angles, speeds, states)
 
@@ -75,9 +75,9 @@ class CompiledLine:
         *,
         step: float,
         start: float = 0.0,
-        angles: Mapping[str, float] | None = None,
-        speeds: Mapping[str, float] | None = None,
-        states: Mapping[str, float] | None = None,
+        angles: Values | None = None,
+        speeds: Values | None = None,
+        states: Values | None = None,
     ) -> CompiledRun:
         """Integrate by the classical Runge-Kutta method; forward angles and speeds and states at the start, 0 if not given.
 
@@ -85,28 +85,69 @@ class CompiledLine:
 
         Raises SimulationError where values stop being finite.
         """
-        if not (every > 0.0 and step > 0.0 and samples >= 1):
-            raise ParameterError(f"samples = {samples}, every = {every:g} s, step = {step:g} s: must be greater than 0.")
-        inner = max(1, math.ceil(every / step * (1.0 - 1e-9)))
-        given = [(angles or {}).get(name, 0.0) for name in self._names] + [(speeds or {}).get(name, 0.0) for name in self._names]
-        given += [(states or {}).get(state.name, state.initial) for state in self.network.states]
-        y = np.array(given, float)
-        path = np.empty((samples, len(y)))
-        done = self._machine.run(
-            pointer(y), start, every / inner, inner, samples, pointer(self._rates.constants), pointer(self._rates.tables), pointer(path)
-        )
-        if done < samples:
-            raise SimulationError(
-                f"The compiled run is not finite from t = {start + done * every:.6g} s on (step {every / inner:.3g} s). Use a shorter step."
-            )
-        times = np.asarray(start + every * np.arange(samples), float)
-        return CompiledRun(times, self._observed(path, start, every))
+        [found] = run_many([self], samples, every, step=step, start=start, angles=angles, speeds=speeds, states=states)
+        if isinstance(found, SimulationError):
+            raise found
+        return found
 
-    def _observed(self, path: FloatArray, start: float, every: float) -> dict[str, FloatArray]:
-        out = np.empty((len(path), max(1, len(self.channels))))
-        read: Program = self._read
-        self._machine.observe(start, every, len(path), pointer(path), pointer(read.constants), pointer(read.tables), pointer(out))
-        return {name: out[:, k] for k, name in enumerate(self.channels)}
+    def initial(self, angles: Values | None, speeds: Values | None, states: Values | None) -> list[float]:
+        """The state at the start from what is given of it."""
+        found = [(angles or {}).get(name, 0.0) for name in self.names] + [(speeds or {}).get(name, 0.0) for name in self.names]
+        return found + [(states or {}).get(state.name, state.initial) for state in self.network.states]
+
+
+def run_many(
+    lines: Sequence[CompiledLine],
+    samples: int,
+    every: float,
+    *,
+    step: float,
+    start: float = 0.0,
+    angles: Values | Sequence[Values] | None = None,
+    speeds: Values | Sequence[Values] | None = None,
+    states: Values | Sequence[Values] | None = None,
+) -> list[CompiledRun | SimulationError]:
+    """Run every line as ``CompiledLine.run`` does; lines of the same structure side by side in vector registers.
+
+    angles, speeds, states : at the start, for all lines, or one mapping for each of them
+
+    Returns a run for each line, or the SimulationError of a line whose values stop being finite; the others go on.
+    """
+    if not (every > 0.0 and step > 0.0 and samples >= 1):
+        raise ParameterError(f"samples = {samples}, every = {every:g} s, step = {step:g} s: must be greater than 0.")
+    inner = max(1, math.ceil(every / step * (1.0 - 1e-9)))
+    given = [_for_each(item, name, len(lines)) for item, name in ((angles, "angles"), (speeds, "speeds"), (states, "states"))]
+    initial = [np.array(line.initial(*values), float) for line, *values in zip(lines, *given, strict=True)]
+    groups: dict[Structure, list[int]] = {}
+    for k, line in enumerate(lines):
+        groups.setdefault(line.structure, []).append(k)
+    times = np.asarray(start + every * np.arange(samples), float)
+    found: dict[int, CompiledRun | SimulationError] = {}
+    for group in groups.values():
+        lanes = processor().lanes
+        for part in (group[first : first + lanes] for first in range(0, len(group), lanes)):
+            width = 1 if len(part) == 1 else lanes
+            out, good = run_lanes(
+                [lines[k].program for k in part], width, np.array([initial[k] for k in part]), samples, every, inner, start
+            )
+            for lane, k in enumerate(part):
+                if good[lane] < samples:
+                    found[k] = _not_finite(start + int(good[lane]) * every, every / inner)
+                else:
+                    found[k] = CompiledRun(times, {name: out[i, lane] for i, name in enumerate(lines[k].channels)})
+    return [found[k] for k in range(len(lines))]
+
+
+def _for_each(given: Values | Sequence[Values] | None, name: str, count: int) -> Sequence[Values | None]:
+    if given is None or isinstance(given, Mapping):
+        return [given] * count
+    if len(given) != count:
+        raise ParameterError(f"{len(given)} mappings of {name} for {count} lines; give one for all or one for each.")
+    return given
+
+
+def _not_finite(time: float, step: float) -> SimulationError:
+    return SimulationError(f"The compiled run is not finite from t = {time:.6g} s on (step {step:.3g} s). Use a shorter step.")
 
 
 def _recorded(make: object) -> list[Expression]:

@@ -1,162 +1,168 @@
-"""A structure as LLVM text: one function of time, state, constants and tables."""
+"""A structure as LLVM text: functions of the state, the row of the known inputs, constants and tables."""
 
 from __future__ import annotations
 
-import struct
+from collections.abc import Sequence
 
-from hdrive_mbs.compiled.program import Step, Structure
+from hdrive_mbs.compiled.llvm_text import Text
+from hdrive_mbs.compiled.structure import Step, Structure
+from hdrive_mbs.compiled.table_code import table_code
+from hdrive_mbs.compiled.vector_functions import VECTORS, vector_function
 
 _PLAIN = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv"}
 _COMPARE = {"lt": "olt", "le": "ole", "eq": "oeq"}
-_INTRINSIC = {"sqrt": "llvm.sqrt.f64", "abs": "llvm.fabs.f64", "floor": "llvm.floor.f64", "ceil": "llvm.ceil.f64"}
+_INTRINSIC = {"sqrt": "sqrt", "abs": "fabs", "floor": "floor", "ceil": "ceil"}
 _LIBRARY = ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "pow", "atan2")
 
-HEAD = "\n".join(
-    [f"declare double @{name}(double)" for name in _INTRINSIC.values()]
-    + [f"declare double @{name}(double)" for name in _LIBRARY if name not in ("pow", "atan2")]
-    + ["declare double @pow(double, double)", "declare double @atan2(double, double)"]
-)
-"""What the generated code calls: intrinsics and the C library's mathematics."""
 
-PIECES = """
-define internal double @pieces(double %x, ptr %base, i64 %count, i64 %width) alwaysinline {
-entry:
-  %breaks = sub i64 %count, 1
-  br label %search
-search:
-  %low = phi i64 [ 0, %entry ], [ %low2, %next ]
-  %high = phi i64 [ %breaks, %entry ], [ %high2, %next ]
-  %more = icmp slt i64 %low, %high
-  br i1 %more, label %next, label %found
-next:
-  %sum = add i64 %low, %high
-  %middle = lshr i64 %sum, 1
-  %at = getelementptr double, ptr %base, i64 %middle
-  %break = load double, ptr %at
-  %right = fcmp ole double %break, %x
-  %above = add i64 %middle, 1
-  %low2 = select i1 %right, i64 %above, i64 %low
-  %high2 = select i1 %right, i64 %high, i64 %middle
-  br label %search
-found:
-  %starts = getelementptr double, ptr %base, i64 %breaks
-  %startat = getelementptr double, ptr %starts, i64 %low
-  %start = load double, ptr %startat
-  %passed = fsub double %x, %start
-  %rows = getelementptr double, ptr %starts, i64 %count
-  %offset = mul i64 %low, %width
-  %row = getelementptr double, ptr %rows, i64 %offset
-  %lastk = sub i64 %width, 1
-  br label %horner
-horner:
-  %k = phi i64 [ %lastk, %found ], [ %k2, %horner ]
-  %value = phi double [ 0.0, %found ], [ %value2, %horner ]
-  %cat = getelementptr double, ptr %row, i64 %k
-  %c = load double, ptr %cat
-  %scaled = fmul double %value, %passed
-  %value2 = fadd double %scaled, %c
-  %k2 = sub i64 %k, 1
-  %done = icmp eq i64 %k, 0
-  br i1 %done, label %end, label %horner
-end:
-  ret double %value2
-}
-"""
-"""Piecewise polynomial by bisection: the first piece whose end lies beyond x."""
+def functions(structure: Structure, width: int, *, shared: bool, fused: bool) -> list[str]:
+    """``rates`` and ``read``, what they call, and its declarations.
 
+    ``void @rates(state*, row, constants*, tables*, columns*, out*)`` on ``width`` lanes, ``read`` alike; the lanes of a
+    number lie side by side.
 
-def written(value: float) -> str:
-    """A float as LLVM reads it exactly."""
-    return "0x" + struct.pack(">d", value).hex().upper()
+    shared : all lanes read the columns of the first one
+    fused : the processor has fused multiply-add
 
-
-def function(name: str, structure: Structure) -> str:
-    """``define void @name(time, state*, constants*, tables*, out*)``; variable 0 is the time, the others are the state in order.
-
-    Both sides of a branch are computed.  Raises ValueError for an operation without a translation.
+    Raises ValueError for an operation without a translation.
     """
-    lines = [f"define void @{name}(double %t, ptr %y, ptr %c, ptr %tables, ptr noalias %out) {{", "entry:"]
-    boolean: set[int] = set()
-    for k, step in enumerate(structure.steps):
-        lines += _lines(k, step, boolean)
-    for k, result in enumerate(structure.results):
-        value = _real(result, boolean, lines, f"r{k}")
-        lines += [f"  %o{k} = getelementptr double, ptr %out, i64 {k}", f"  store double {value}, ptr %o{k}"]
-    return "\n".join([*lines, "  ret void", "}"])
+    declared: dict[str, str] = {}
+    vectors = [name for name in VECTORS if fused and any(step.operation == name for step in structure.steps)]
+    made = [vector_function(name, width, declared) for name in vectors]
+    orders = sorted({step.data[1] for step in structure.steps if isinstance(step.data, tuple)})
+    made += [table_code(order, declared) for order in orders]
+    for name, results in (("rates", structure.rates), ("read", structure.readings)):
+        made.append(_Function(structure, width, shared, vectors, declared).text(name, results))
+    return [*declared.values(), *made]
 
 
-def _real(number: int, boolean: set[int], lines: list[str], name: str) -> str:
-    """A step as a double; comparisons become 1 or 0."""
-    if number not in boolean:
-        return f"%v{number}"
-    lines.append(f"  %{name} = uitofp i1 %v{number} to double")
-    return f"%{name}"
+class _Function:
+    """One function, written step by step."""
 
+    def __init__(self, structure: Structure, width: int, shared: bool, vectors: Sequence[str], declared: dict[str, str]) -> None:
+        self.structure, self.shared, self.vectors = structure, shared, vectors
+        self.write = Text(width, declared)
+        self.values: dict[int, str] = {}
+        self.truths: dict[int, str] = {}
 
-def _truth(number: int, boolean: set[int], lines: list[str], name: str) -> str:
-    """A step as a truth value."""
-    if number in boolean:
-        return f"%v{number}"
-    lines.append(f"  %{name} = fcmp une double %v{number}, 0.0")
-    return f"%{name}"
+    def text(self, name: str, results: Sequence[int]) -> str:
+        """Both sides of a branch are computed."""
+        needed, left = set(), list(results)
+        while left:
+            k = left.pop()
+            if k not in needed:
+                needed.add(k)
+                left += self.structure.steps[k].arguments
+        for k in sorted(needed):
+            self._step(k, self.structure.steps[k])
+        for k, result in enumerate(results):
+            self.write.store(self._real(result), "%out", k)
+        parameters = "ptr noalias %y, i64 %row, ptr noalias %c, ptr noalias %tables, ptr noalias %columns, ptr noalias %out"
+        return "\n".join([f"define internal void @{name}({parameters}) {{", "entry:", *self.write.lines, "  ret void", "}"])
 
+    def _real(self, k: int) -> str:
+        """A step as a number; comparisons become 1 or 0."""
+        if k not in self.values:
+            self.values[k] = self.write.new(f"uitofp {self.write.truth} {self.truths[k]} to {self.write.real}")
+        return self.values[k]
 
-def _lines(k: int, step: Step, boolean: set[int]) -> list[str]:
-    operation, data = step.operation, step.data
-    lines: list[str] = []
-    if operation == "number":
-        assert isinstance(data, float)
-        return [f"  %v{k} = fadd double {written(data)}, {written(-0.0)}"]
-    if operation == "constant":
-        return [f"  %p{k} = getelementptr double, ptr %c, i64 {data}", f"  %v{k} = load double, ptr %p{k}"]
-    if operation == "variable":
-        assert isinstance(data, int)
-        if data == 0:
-            return [f"  %v{k} = fadd double %t, {written(-0.0)}"]
-        return [f"  %p{k} = getelementptr double, ptr %y, i64 {data - 1}", f"  %v{k} = load double, ptr %p{k}"]
-    if operation in ("and", "or", "not"):
-        truths = [_truth(item, boolean, lines, f"b{k}_{i}") for i, item in enumerate(step.arguments)]
-        boolean.add(k)
-        other = truths[1] if len(truths) > 1 else "true"
-        return [*lines, f"  %v{k} = {'xor' if operation == 'not' else operation} i1 {truths[0]}, {other}"]
-    if operation == "where":
-        test = _truth(step.arguments[0], boolean, lines, f"b{k}")
-        a, b = (_real(item, boolean, lines, f"w{k}_{i}") for i, item in enumerate(step.arguments[1:]))
-        return [*lines, f"  %v{k} = select i1 {test}, double {a}, double {b}"]
-    values = [_real(item, boolean, lines, f"a{k}_{i}") for i, item in enumerate(step.arguments)]
-    if operation in _COMPARE:
-        boolean.add(k)
-        return [*lines, f"  %v{k} = fcmp {_COMPARE[operation]} double {values[0]}, {values[1]}"]
-    if operation == "pieces":
-        assert isinstance(data, tuple)
-        first, count, width = data
-        lines.append(f"  %p{k} = getelementptr double, ptr %tables, i64 {first}")
-        return [*lines, f"  %v{k} = call double @pieces(double {values[0]}, ptr %p{k}, i64 {count}, i64 {width})"]
-    return [*lines, *_arithmetic(k, operation, values)]
+    def _truth(self, k: int) -> str:
+        """A step as a truth value."""
+        if k not in self.truths:
+            self.truths[k] = self.write.compare("une", self.values[k], self.write.number(0.0))
+        return self.truths[k]
 
+    def _step(self, k: int, step: Step) -> None:
+        operation, write = step.operation, self.write
+        if operation in ("and", "or", "not"):
+            a, *rest = (self._truth(item) for item in step.arguments)
+            other = rest[0] if rest else write.true
+            self.truths[k] = write.new(f"{'xor' if operation == 'not' else operation} {write.truth} {a}, {other}")
+        elif operation in _COMPARE:
+            self.truths[k] = write.compare(_COMPARE[operation], *(self._real(item) for item in step.arguments))
+        elif operation == "where":
+            test, yes, no = step.arguments
+            self.values[k] = write.choose(self._truth(test), self._real(yes), self._real(no))
+        else:
+            self.values[k] = self._value(step)
 
-def _arithmetic(k: int, operation: str, values: list[str]) -> list[str]:
-    if operation in _PLAIN:
-        return [f"  %v{k} = {_PLAIN[operation]} double {values[0]}, {values[1]}"]
-    if operation == "neg":
-        return [f"  %v{k} = fneg double {values[0]}"]
-    if operation in ("min", "max"):
-        # like numpy, a NaN comes out
-        return [
-            f"  %n{k} = fcmp uno double {values[0]}, {values[0]}",
-            f"  %m{k} = fcmp {'olt' if operation == 'min' else 'ogt'} double {values[0]}, {values[1]}",
-            f"  %f{k} = or i1 %n{k}, %m{k}",
-            f"  %v{k} = select i1 %f{k}, double {values[0]}, double {values[1]}",
-        ]
-    if operation == "sign":
-        return [
-            f"  %g{k} = fcmp ogt double {values[0]}, 0.0",
-            f"  %l{k} = fcmp olt double {values[0]}, 0.0",
-            f"  %h{k} = select i1 %l{k}, double -1.0, double 0.0",
-            f"  %v{k} = select i1 %g{k}, double 1.0, double %h{k}",
-        ]
-    if operation in _INTRINSIC:
-        return [f"  %v{k} = call double @{_INTRINSIC[operation]}(double {values[0]})"]
-    if operation in _LIBRARY:
-        return [f"  %v{k} = call double @{operation}({', '.join(f'double {value}' for value in values)})"]
-    raise ValueError(f"no machine code for the operation {operation!r}")
+    def _value(self, step: Step) -> str:
+        operation, data, write = step.operation, step.data, self.write
+        if operation == "number":
+            assert isinstance(data, float)
+            return write.number(data)
+        if operation in ("constant", "variable"):
+            assert isinstance(data, int)
+            return write.load(write.real, "%c" if operation == "constant" else "%y", data)
+        if operation == "input":
+            assert isinstance(data, int)
+            return self._input(data)
+        values = [self._real(item) for item in step.arguments]
+        if operation == "pieces":
+            assert isinstance(data, tuple)
+            return write.gathered([self._looked_up(values[0], *data, lane) for lane in range(write.width)])
+        if operation in ("min", "max"):
+            return self._extreme("olt" if operation == "min" else "ogt", step, values)
+        return self._arithmetic(step, values)
+
+    def _looked_up(self, x: str, table: int, order: int, lane: int) -> str:
+        """What a lane reads from its table."""
+        first = 2 * table * self.write.width + lane
+        where, count = self.write.load("ptr", "%tables", first), self.write.load("i64", "%tables", first + self.write.width)
+        return self.write.new(f"call double @pieces_{order}(double {self.write.lane(x, lane)}, ptr {where}, i64 {count})")
+
+    def _input(self, number: int) -> str:
+        write = self.write
+        lanes = [self._cell(number * write.width + lane) for lane in range(1 if self.shared else write.width)]
+        if len(lanes) < write.width:
+            return write.everywhere(lanes[0])
+        return write.gathered(lanes)
+
+    def _cell(self, column: int) -> str:
+        base = self.write.load("ptr", "%columns", column)
+        at = self.write.new(f"getelementptr double, ptr {base}, i64 %row")
+        return self.write.new(f"load double, ptr {at}, align 8")
+
+    def _extreme(self, better: str, step: Step, values: list[str]) -> str:
+        """Like numpy, NaN from either argument comes out.  ``a better b ? a : b`` gives b where one is NaN."""
+        write, (a, b) = self.write, values
+        first, second = (self.structure.steps[item].operation in ("number", "constant") for item in step.arguments)
+        if second and not first:
+            a, b, first = b, a, True
+        chosen = write.choose(write.compare(better, a, b), a, b)
+        return chosen if first else write.choose(write.compare("uno", a, a), a, chosen)
+
+    def _arithmetic(self, step: Step, values: list[str]) -> str:
+        operation, write = step.operation, self.write
+        if operation in _PLAIN:
+            return write.new(f"{_PLAIN[operation]} {write.real} {values[0]}, {values[1]}")
+        if operation == "neg":
+            return write.negative(values[0])
+        if operation == "sign":
+            one = write.intrinsic("copysign", write.number(1.0), values[0])
+            return write.choose(write.compare("one", values[0], write.number(0.0)), one, values[0])
+        if operation in _INTRINSIC:
+            return write.intrinsic(_INTRINSIC[operation], values[0])
+        if operation == "pow" and self.structure.steps[step.arguments[1]].operation == "number":
+            return self._power(values[0], self.structure.steps[step.arguments[1]].data)
+        if operation in self.vectors:
+            return write.new(f"call {write.real} @vector_{operation}({', '.join(f'{write.real} {value}' for value in values)})")
+        if operation in _LIBRARY:
+            return write.library(operation, *values)
+        raise ValueError(f"no machine code for the operation {operation!r}")
+
+    def _power(self, base: str, exponent: object) -> str:
+        """Whole and half powers by products and a root."""
+        assert isinstance(exponent, float)
+        write, (whole, rest) = self.write, divmod(abs(exponent), 1.0)
+        factors = [write.intrinsic("sqrt", base)] if rest else []
+        square, left = base, int(whole)
+        while left:
+            if left % 2:
+                factors.append(square)
+            left //= 2
+            square = write.mul(square, square) if left else square
+        product = factors[0] if factors else write.number(1.0)
+        for factor in factors[1:]:
+            product = write.mul(product, factor)
+        return write.div(write.number(1.0), product) if exponent < 0.0 else product

@@ -5,66 +5,77 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache, lru_cache
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
-from hdrive_mbs.compiled.llvm_code import HEAD, PIECES, function
-from hdrive_mbs.compiled.program import Structure
-from hdrive_mbs.compiled.runge_kutta import OBSERVE, RUN
+from hdrive_mbs.compiled.llvm_code import functions
+from hdrive_mbs.compiled.runge_kutta import loop
+from hdrive_mbs.compiled.structure import Structure
 from hdrive_mbs.errors import DependencyError
 
-FloatArray = npt.NDArray[np.float64]
 
-_POINTER = ctypes.POINTER(ctypes.c_double)
-_made: dict[tuple[Structure, Structure], Machine] = {}
+@dataclass(frozen=True)
+class Processor:
+    """What the machine code is written for.
+
+    name, features : as LLVM calls them
+    lanes : doubles in a vector register
+    fused : whether it has fused multiply-add
+    """
+
+    name: str
+    features: str
+    lanes: int
+    fused: bool
 
 
 @dataclass(frozen=True)
 class Machine:
-    """Compiled functions of one pair of structures (rates and channels)."""
+    """A compiled run of one structure on a number of lanes."""
 
-    run: Callable[..., int]
-    observe: Callable[..., None]
+    run: Callable[..., None]
     kept: Any
     """The execution engine; its code lives as long as it does."""
 
 
-def machine(rates: Structure, channels: Structure) -> Machine:
-    """Compile, or take what has been compiled for the same structures in this process.
+@cache
+def processor() -> Processor:
+    """This computer's.  Raises DependencyError without llvmlite."""
+    llvm = _llvm()
+    features = llvm.get_host_cpu_features()
+    arm = llvm.get_default_triple().startswith(("aarch64", "arm64"))
+    lanes = 8 if features.get("avx512f") else 4 if features.get("avx2") else 2
+    return Processor(llvm.get_host_cpu_name(), features.flatten(), lanes, bool(arm or features.get("fma")))
+
+
+@lru_cache(maxsize=256)
+def machine(structure: Structure, width: int = 1, *, shared: bool = True) -> Machine:
+    """Compile, or take what has been compiled for the same structure in this process.
+
+    width : lanes that run side by side
+    shared : all lanes have the same inputs
 
     Raises DependencyError without llvmlite.
     """
-    key = (rates, channels)
-    if key not in _made:
-        _made[key] = _compiled(rates, channels)
-    return _made[key]
+    llvm, host = _llvm(), processor()
+    sources = [*functions(structure, width, shared=shared, fused=host.fused), *loop(structure.states, len(structure.readings), width)]
+    module = llvm.parse_assembly("\n".join(dict.fromkeys(sources)))
+    module.verify()
+    target = llvm.Target.from_default_triple().create_target_machine(cpu=host.name, features=host.features, opt=2)
+    builder = llvm.create_pass_builder(target, llvm.create_pipeline_tuning_options(speed_level=2))
+    builder.getModulePassManager().run(module, builder)
+    engine = llvm.create_mcjit_compiler(module, target)
+    engine.finalize_object()
+    pointer, real, whole = ctypes.c_void_p, ctypes.c_double, ctypes.c_int64
+    kind = ctypes.CFUNCTYPE(None, pointer, real, whole, whole, whole, pointer, pointer, pointer, pointer, pointer, whole)
+    return Machine(kind(engine.get_function_address("run")), (engine, target, module))
 
 
-def _compiled(rates: Structure, channels: Structure) -> Machine:
+def _llvm() -> Any:
     try:
         import llvmlite.binding as llvm
     except ImportError:
         raise DependencyError('Compiled runs need llvmlite: python -m pip install "hdrive-mbs[diagnosis]"') from None
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    n, m = len(rates.results), max(1, len(channels.results))
-    sources = [HEAD, PIECES, function("rates", rates), function("read", channels), RUN.format(n=n), OBSERVE.format(n=n, m=m)]
-    module = llvm.parse_assembly("\n".join(sources))
-    module.verify()
-    target = llvm.Target.from_default_triple().create_target_machine(opt=2)
-    options = llvm.create_pipeline_tuning_options(speed_level=2)
-    builder = llvm.create_pass_builder(target, options)
-    builder.getModulePassManager().run(module, builder)
-    engine = llvm.create_mcjit_compiler(module, target)
-    engine.finalize_object()
-    real, whole = ctypes.c_double, ctypes.c_int64
-    run = ctypes.CFUNCTYPE(whole, _POINTER, real, real, whole, whole, _POINTER, _POINTER, _POINTER)(engine.get_function_address("run"))
-    observe = ctypes.CFUNCTYPE(None, real, real, whole, _POINTER, _POINTER, _POINTER, _POINTER)(engine.get_function_address("observe"))
-    return Machine(run, observe, (engine, target, module))
-
-
-def pointer(array: FloatArray) -> Any:
-    """The memory of a contiguous array of doubles."""
-    return array.ctypes.data_as(_POINTER)
+    return llvm

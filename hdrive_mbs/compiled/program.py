@@ -7,35 +7,30 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.expression import Expression, in_order
-from hdrive_mbs.expression.pieces import Pieces
+from hdrive_mbs.compiled.structure import Structure, planned
+from hdrive_mbs.compiled.time_inputs import TIME, TimeInput, digest, time_input
+from hdrive_mbs.expression import Expression, Pieces, in_order
 
 FloatArray = npt.NDArray[np.float64]
 
 WRITTEN = (0.0, 1.0, -1.0, 2.0, 0.5)
 """Numbers that belong to a structure: most of them come from the form of a law, not from its data."""
 
-
-@dataclass(frozen=True)
-class Step:
-    """One operation: its arguments are numbers of earlier steps."""
-
-    operation: str
-    arguments: tuple[int, ...]
-    data: str | float | int | tuple[int, ...] | None = None
+_tables: WeakKeyDictionary[Pieces, Table] = WeakKeyDictionary()
 
 
-@dataclass(frozen=True)
-class Structure:
-    """Steps that compute ``results`` from variables, constants and tables."""
+@dataclass(frozen=True, eq=False)
+class Table:
+    """A piecewise polynomial in a row: breaks, starts and coefficients of its pieces."""
 
-    variables: tuple[str, ...]
-    steps: tuple[Step, ...]
-    results: tuple[int, ...]
+    pieces: int
+    values: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,52 +38,55 @@ class Program:
     """A structure with its numbers.
 
     constants : values that the steps "constant" refer to by position
-    tables : breaks, starts and coefficients of all piecewise polynomials, one after the other
+    tables : what the steps "pieces" refer to
+    inputs : what is known before a run; the first is the time
     """
 
     structure: Structure
     constants: FloatArray
-    tables: FloatArray
+    tables: tuple[Table, ...]
+    inputs: tuple[TimeInput, ...]
 
 
-def program(expressions: Sequence[Expression], variables: Sequence[str]) -> Program:
-    """Take expressions over these variables apart.  Equal steps become one."""
-    index = {name: k for k, name in enumerate(variables)}
-    steps: list[Step] = []
-    known: dict[Step, int] = {}
-    number: dict[int, int] = {}
+def program(rates: Sequence[Expression], readings: Sequence[Expression], variables: Sequence[str]) -> Program:
+    """Take expressions over these variables apart.  Equal steps become one; the variable "t" is the time."""
+    ordered = in_order(*rates, *readings)
+    exponents = {id(node.arguments[1]) for node in ordered if node.operation == "pow"}
+    place: dict[int, int] = {}
+    form: list[tuple[str, Any, tuple[int, ...]]] = []
     constants: list[float] = []
-    tables: list[FloatArray] = []
-    size = 0
-
-    def add(step: Step) -> int:
-        if step not in known:
-            known[step] = len(steps)
-            steps.append(step)
-        return known[step]
-
-    exponents = {id(node.arguments[1]) for node in in_order(*expressions) if node.operation == "pow"}
-    for node in in_order(*expressions):
-        arguments = tuple(number[id(item)] for item in node.arguments)
-        if node.operation == "variable":
-            made = Step("variable", (), index[node.data])
-        elif node.operation == "constant":
-            value = float(node.data)
-            if value in WRITTEN or (id(node) in exponents and value == int(value) and abs(value) <= 9.0):
-                made = Step("number", (), value)
+    tables: dict[bytes, tuple[int, Pieces]] = {}
+    for k, node in enumerate(ordered):
+        operation, data = node.operation, node.data
+        place[id(node)] = k
+        if operation == "constant":
+            if data in WRITTEN or (id(node) in exponents and abs(data) <= 9.0 and (2.0 * data).is_integer()):
+                form.append(("number", data, ()))
             else:
-                made = Step("constant", (), len(constants))
-                constants.append(value)
-        elif node.operation == "pieces":
-            pieces: Pieces = node.data
-            count, width = pieces.coefficients.shape
-            made = Step("pieces", arguments, (size, count, width))
-            flat = np.concatenate([pieces.breaks, pieces.starts, pieces.coefficients.ravel()])
-            tables.append(flat)
-            size += len(flat)
+                form.append(("constant", len(constants), ()))
+                constants.append(data)
+        elif operation == "variable":
+            form.append(("variable", data, ()))
+        elif operation == "pieces":
+            number, _ = tables.setdefault(digest(data), (len(tables), data))
+            form.append(("pieces", (number, data.coefficients.shape[1]), (place[id(node.arguments[0])],)))
         else:
-            made = Step(node.operation, arguments)
-        number[id(node)] = add(made)
-    results = tuple(number[id(expression)] for expression in expressions)
-    whole = np.concatenate(tables) if tables else np.zeros(1)
-    return Program(Structure(tuple(variables), tuple(steps), results), np.array(constants or [0.0]), whole)
+            form.append((operation, None, tuple([place[id(item)] for item in node.arguments])))
+    results = tuple([place[id(item)] for item in rates]), tuple([place[id(item)] for item in readings])
+    plan = planned(tuple(form), *results, tuple(variables))
+    values = np.array([0.0, *constants])[plan.constants]
+    values[plan.inverses] = 1.0 / values[plan.inverses]
+    pieces = [item for _, item in tables.values()]
+    return Program(
+        plan.structure,
+        values,
+        tuple(_table(pieces[k]) for k in plan.tables),
+        (TIME, *(time_input(ordered[k]) for k in plan.inputs)),
+    )
+
+
+def _table(pieces: Pieces) -> Table:
+    if pieces not in _tables:
+        flat = np.concatenate([pieces.breaks, pieces.starts, pieces.coefficients.ravel()], dtype=float)
+        _tables[pieces] = Table(len(pieces.starts), flat)
+    return _tables[pieces]

@@ -1,137 +1,119 @@
-"""The loop around a right-hand side, as LLVM text: classical Runge-Kutta of order 4 with a fixed step."""
+"""The loop around rates and readings, as LLVM text: classical Runge-Kutta of order 4 with a fixed step, on lanes."""
 
 from __future__ import annotations
 
-RUN = """
-define i64 @run(ptr noalias %y, double %start, double %h, i64 %inner, i64 %samples, ptr %c, ptr %tables, ptr noalias %out) {{
+from hdrive_mbs.compiled.llvm_text import Text, typed
+
+
+def loop(states: int, readings: int, width: int) -> list[str]:
+    """``run`` and what it calls, its declarations first.
+
+    ``void @run(y*, h, inner, samples, last, constants*, tables*, columns*, good*, out*, rows)`` makes ``samples`` rows of
+    readings; between two of them lie ``inner`` steps h, and after the last one too unless ``last`` is 1.
+
+    y : states, the lanes of each side by side; at the end those after the last step
+    columns : what is known at every half step
+    good : for each lane the number of samples with finite states, counted on
+    out : for each reading and lane ``rows`` values in a row, written from the first on
+    """
+    declared: dict[str, str] = {}
+    parts = {"n": states, "m": readings * width, "real": typed("double", width), "columns_m": max(1, readings)}
+    made = [_RUN.format(**parts), _move(states, width, declared), _finite(states, width, declared)]
+    return [*declared.values(), *made]
+
+
+def _move(states: int, width: int, declared: dict[str, str]) -> str:
+    """to = y + h k."""
+    text = Text(width, declared)
+    step = text.everywhere("%h")
+    for k in range(states):
+        way = text.mul(step, text.load(text.real, "%k", k))
+        text.store(text.add(text.load(text.real, "%y", k), way), "%to", k)
+    head = "define internal void @move(ptr %to, ptr %y, double %h, ptr noalias %k) {"
+    return "\n".join([head, "entry:", *text.lines, "  ret void", "}"])
+
+
+def _finite(states: int, width: int, declared: dict[str, str]) -> str:
+    """Count on in the lanes whose states are all finite; whether there is one."""
+    text = Text(width, declared)
+    total = text.number(0.0)
+    for k in range(states):
+        total = text.add(total, text.mul(text.load(text.real, "%y", k), text.number(0.0)))
+    good = text.compare("oeq", total, text.number(0.0))
+    count = text.load(text.whole, "%good", 0)
+    more = text.integers("add", count, text.new(f"zext {text.truth} {good} to {text.whole}"))
+    text.lines.append(f"  store {text.whole} {more}, ptr %good, align 8")
+    some = text.any(good)
+    return "\n".join(["define internal i1 @finite(ptr noalias %y, ptr noalias %good) {", "entry:", *text.lines, f"  ret i1 {some}", "}"])
+
+
+_RUN = """
+define void @run(
+  ptr noalias %y, double %h, i64 %inner, i64 %samples, i64 %last,
+  ptr noalias %c, ptr noalias %tables, ptr noalias %columns, ptr noalias %good, ptr noalias %out, i64 %rows
+) {{
 entry:
-  %k1 = alloca [{n} x double], align 16
-  %k2 = alloca [{n} x double], align 16
-  %k3 = alloca [{n} x double], align 16
-  %k4 = alloca [{n} x double], align 16
-  %stage = alloca [{n} x double], align 16
+  %k1 = alloca [{n} x {real}], align 64
+  %k2 = alloca [{n} x {real}], align 64
+  %k3 = alloca [{n} x {real}], align 64
+  %k4 = alloca [{n} x {real}], align 64
+  %stage = alloca [{n} x {real}], align 64
+  %line = alloca [{columns_m} x {real}], align 64
   %half = fmul double %h, 0.5
   %sixth = fdiv double %h, 6.0
+  %third = fmul double %sixth, 2.0
   br label %sample
 sample:
   %s = phi i64 [ 0, %entry ], [ %s2, %stepped ]
-  %row = mul i64 %s, {n}
-  %to = getelementptr double, ptr %out, i64 %row
-  call void @copy(ptr %to, ptr %y)
-  %checked = call i1 @finite(ptr %y)
-  br i1 %checked, label %more, label %broken
-broken:
-  ret i64 %s
+  %whole = mul i64 %s, %inner
+  %row = mul i64 %whole, 2
+  %checked = call i1 @finite(ptr %y, ptr %good)
+  br i1 %checked, label %reading, label %end
+reading:
+  call void @read(ptr %y, i64 %row, ptr %c, ptr %tables, ptr %columns, ptr %line)
+  br label %scatter
+scatter:
+  %j = phi i64 [ 0, %reading ], [ %j2, %write ]
+  %left = icmp slt i64 %j, {m}
+  br i1 %left, label %write, label %more
+write:
+  %from = getelementptr double, ptr %line, i64 %j
+  %value = load double, ptr %from
+  %first = mul i64 %j, %rows
+  %place = add i64 %first, %s
+  %to = getelementptr double, ptr %out, i64 %place
+  store double %value, ptr %to
+  %j2 = add i64 %j, 1
+  br label %scatter
 more:
   %s2 = add i64 %s, 1
   %over = icmp eq i64 %s2, %samples
-  br i1 %over, label %end, label %step
+  %stop = icmp eq i64 %last, 1
+  %finished = and i1 %over, %stop
+  br i1 %finished, label %end, label %step
 step:
   %i = phi i64 [ 0, %more ], [ %i2, %step ]
-  %whole = mul i64 %s, %inner
-  %number = add i64 %whole, %i
-  %count = sitofp i64 %number to double
-  %passed = fmul double %count, %h
-  %t = fadd double %start, %passed
-  %tm = fadd double %t, %half
-  %te = fadd double %t, %h
-  call void @rates(double %t, ptr %y, ptr %c, ptr %tables, ptr %k1)
+  %passed = mul i64 %i, 2
+  %r0 = add i64 %row, %passed
+  %r1 = add i64 %r0, 1
+  %r2 = add i64 %r0, 2
+  call void @rates(ptr %y, i64 %r0, ptr %c, ptr %tables, ptr %columns, ptr %k1)
   call void @move(ptr %stage, ptr %y, double %half, ptr %k1)
-  call void @rates(double %tm, ptr %stage, ptr %c, ptr %tables, ptr %k2)
+  call void @rates(ptr %stage, i64 %r1, ptr %c, ptr %tables, ptr %columns, ptr %k2)
   call void @move(ptr %stage, ptr %y, double %half, ptr %k2)
-  call void @rates(double %tm, ptr %stage, ptr %c, ptr %tables, ptr %k3)
+  call void @rates(ptr %stage, i64 %r1, ptr %c, ptr %tables, ptr %columns, ptr %k3)
   call void @move(ptr %stage, ptr %y, double %h, ptr %k3)
-  call void @rates(double %te, ptr %stage, ptr %c, ptr %tables, ptr %k4)
+  call void @rates(ptr %stage, i64 %r2, ptr %c, ptr %tables, ptr %columns, ptr %k4)
   call void @move(ptr %y, ptr %y, double %sixth, ptr %k1)
-  %third = fmul double %sixth, 2.0
   call void @move(ptr %y, ptr %y, double %third, ptr %k2)
   call void @move(ptr %y, ptr %y, double %third, ptr %k3)
   call void @move(ptr %y, ptr %y, double %sixth, ptr %k4)
   %i2 = add i64 %i, 1
-  %last = icmp eq i64 %i2, %inner
-  br i1 %last, label %stepped, label %step
+  %done = icmp eq i64 %i2, %inner
+  br i1 %done, label %stepped, label %step
 stepped:
-  br label %sample
-end:
-  ret i64 %samples
-}}
-
-define internal void @move(ptr %to, ptr %y, double %h, ptr %k) alwaysinline {{
-entry:
-  br label %loop
-loop:
-  %i = phi i64 [ 0, %entry ], [ %i2, %loop ]
-  %ya = getelementptr double, ptr %y, i64 %i
-  %ka = getelementptr double, ptr %k, i64 %i
-  %ta = getelementptr double, ptr %to, i64 %i
-  %yv = load double, ptr %ya
-  %kv = load double, ptr %ka
-  %d = fmul double %h, %kv
-  %v = fadd double %yv, %d
-  store double %v, ptr %ta
-  %i2 = add i64 %i, 1
-  %done = icmp eq i64 %i2, {n}
-  br i1 %done, label %end, label %loop
-end:
-  ret void
-}}
-
-define internal void @copy(ptr %to, ptr %y) alwaysinline {{
-entry:
-  br label %loop
-loop:
-  %i = phi i64 [ 0, %entry ], [ %i2, %loop ]
-  %ya = getelementptr double, ptr %y, i64 %i
-  %ta = getelementptr double, ptr %to, i64 %i
-  %yv = load double, ptr %ya
-  store double %yv, ptr %ta
-  %i2 = add i64 %i, 1
-  %done = icmp eq i64 %i2, {n}
-  br i1 %done, label %end, label %loop
-end:
-  ret void
-}}
-
-define internal i1 @finite(ptr %y) alwaysinline {{
-entry:
-  br label %loop
-loop:
-  %i = phi i64 [ 0, %entry ], [ %i2, %loop ]
-  %sum = phi double [ 0.0, %entry ], [ %sum2, %loop ]
-  %ya = getelementptr double, ptr %y, i64 %i
-  %yv = load double, ptr %ya
-  %zero = fmul double %yv, 0.0
-  %sum2 = fadd double %sum, %zero
-  %i2 = add i64 %i, 1
-  %done = icmp eq i64 %i2, {n}
-  br i1 %done, label %end, label %loop
-end:
-  %good = fcmp oeq double %sum2, 0.0
-  ret i1 %good
-}}
-"""
-"""Samples at start, start + inner h, ...: row s of ``out`` is the state there; returns the number of rows that are finite."""
-
-
-OBSERVE = """
-define void @observe(double %start, double %every, i64 %samples, ptr %states, ptr %c, ptr %tables, ptr noalias %out) {{
-entry:
-  br label %loop
-loop:
-  %s = phi i64 [ 0, %entry ], [ %s2, %loop ]
-  %count = sitofp i64 %s to double
-  %passed = fmul double %count, %every
-  %t = fadd double %start, %passed
-  %row = mul i64 %s, {n}
-  %y = getelementptr double, ptr %states, i64 %row
-  %line = mul i64 %s, {m}
-  %to = getelementptr double, ptr %out, i64 %line
-  call void @read(double %t, ptr %y, ptr %c, ptr %tables, ptr %to)
-  %s2 = add i64 %s, 1
-  %done = icmp eq i64 %s2, %samples
-  br i1 %done, label %end, label %loop
+  br i1 %over, label %end, label %sample
 end:
   ret void
 }}
 """
-"""Channels at every sample of a run."""

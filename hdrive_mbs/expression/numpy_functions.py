@@ -25,17 +25,33 @@ from hdrive_mbs.expression.node import (
     power,
     truth,
 )
-from hdrive_mbs.expression.pieces import lines_between
+from hdrive_mbs.expression.pieces import Pieces, lines_between
+
+_KEPT = 64
+
+_tables: dict[tuple[int, int], tuple[Any, Any, Pieces]] = {}
+"""Tables of the laws recorded last, with the tuples that they were made from."""
 
 
 def _interp(x: Any, xp: Sequence[float], fp: Sequence[float], left: Any = None, right: Any = None, period: Any = None) -> Expression:
     """np.interp as one node, however long the table is."""
     if period is not None:
         raise TraceError("np.interp with period= cannot be recorded; write np.interp(np.mod(x, period), ...)")
+    if left is None and right is None and type(xp) is tuple and type(fp) is tuple:
+        # tuples cannot change: a long table is read once, however often its law is recorded
+        kept = _tables.pop((id(xp), id(fp)), None) or (xp, fp, _lines(xp, fp, left, right))
+        _tables[id(xp), id(fp)] = kept
+        if len(_tables) > _KEPT:
+            del _tables[next(iter(_tables))]
+        return as_node(kept[2](as_node(x)))
+    return as_node(_lines(xp, fp, left, right)(as_node(x)))
+
+
+def _lines(xp: Sequence[float], fp: Sequence[float], left: Any, right: Any) -> Pieces:
     xs, ys = np.asarray(xp, float), np.asarray(fp, float)
     if xs.ndim != 1 or xs.shape != ys.shape or not len(xs) or np.any(np.diff(xs) < 0.0):
         raise TraceError(f"np.interp needs as many values ({ys.shape}) as rising points ({xs.shape})")
-    return as_node(lines_between(xs, ys, ys[0] if left is None else left, ys[-1] if right is None else right)(as_node(x)))
+    return lines_between(xs, ys, ys[0] if left is None else left, ys[-1] if right is None else right)
 
 
 def _polyval(p: Sequence[Any], x: Any) -> Expression:

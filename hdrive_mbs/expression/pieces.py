@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -40,6 +41,10 @@ class Pieces:
 
     def derivative(self) -> Pieces:
         """The derivative, piece by piece."""
+        return self._slopes
+
+    @cached_property
+    def _slopes(self) -> Pieces:
         powers = np.arange(1, self.coefficients.shape[1])
         lower = self.coefficients[:, 1:] * powers if len(powers) else np.zeros((len(self.starts), 1))
         return Pieces(self.breaks, self.starts, lower)

@@ -1,0 +1,166 @@
+"""The structure of recorded expressions: what they compute, without the numbers; made once for each form."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Step:
+    """One operation: its arguments are numbers of earlier steps."""
+
+    operation: str
+    arguments: tuple[int, ...]
+    data: float | int | tuple[int, int] | None = None
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Steps that compute ``rates`` and ``readings``.
+
+    width of a table : coefficients of a piece
+    inputs, constants, tables : how many numbers it takes; input 0 is the time
+    states : variables apart from the time
+    """
+
+    steps: tuple[Step, ...]
+    rates: tuple[int, ...]
+    readings: tuple[int, ...]
+    states: int
+    inputs: int
+    constants: int
+    tables: int
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """How the numbers of a form become those of its structure.
+
+    constants : for each of the structure, which of the form (counted from 1)
+    inverses : those of which 1/value is taken, because a product is faster than a quotient
+    inputs : nodes of the form that are known before a run
+    tables : which of the form
+    """
+
+    structure: Structure
+    constants: list[int]
+    inverses: list[int]
+    inputs: tuple[int, ...]
+    tables: tuple[int, ...]
+
+
+Form = tuple[tuple[str, Any, tuple[int, ...]], ...]
+"""Nodes in order: operation, data, and the places of the arguments.
+
+data : of a variable its name, of a number its value, of a constant which one it is, of a table which one and its width
+"""
+
+
+@lru_cache(maxsize=256)
+def planned(form: Form, rates: tuple[int, ...], readings: tuple[int, ...], variables: tuple[str, ...]) -> Plan:
+    """The structure of a form.  What depends on time alone and reads tables becomes an input."""
+    maker = _Maker(form, (*rates, *readings), variables)
+    number = maker.number
+    structure = Structure(
+        tuple(maker.steps),
+        tuple(number[k] for k in rates),
+        tuple(number[k] for k in readings),
+        len(variables) - 1,
+        1 + len(maker.inputs),
+        len(maker.constants),
+        len(maker.tables),
+    )
+    return Plan(structure, [k for k, _ in maker.constants], maker.inverses(), tuple(maker.inputs.values()), tuple(maker.tables))
+
+
+class _Maker:
+    """Steps of a form, made node by node."""
+
+    def __init__(self, form: Form, results: Sequence[int], variables: Sequence[str]) -> None:
+        self.form = form
+        self.index = {name: k for k, name in enumerate(variables)}
+        self.steps: list[Step] = []
+        self.known: dict[Step, int] = {}
+        self.number: dict[int, int] = {}
+        self.constants: dict[tuple[int, bool], int] = {}
+        self.tables: dict[int, int] = {}
+        self.inputs: dict[object, int] = {}
+        before = _known_before(form)
+        needed = _needed(form, results, before)
+        for k in range(len(form)):
+            if k in needed:
+                self.number[k] = self._input(k) if k in before else self._node(k)
+
+    def inverses(self) -> list[int]:
+        """Positions of the constants that are inverted."""
+        return [at for (_, inverse), at in self.constants.items() if inverse]
+
+    def _add(self, step: Step) -> int:
+        if step not in self.known:
+            self.known[step] = len(self.steps)
+            self.steps.append(step)
+        return self.known[step]
+
+    def _constant(self, place: int, inverse: bool = False) -> int:
+        return self._add(Step("constant", (), self.constants.setdefault((place + 1, inverse), len(self.constants))))
+
+    def _input(self, k: int) -> int:
+        key = self._content(k)
+        if key not in self.inputs:
+            self.inputs[key] = k
+        return self._add(Step("input", (), 1 + list(self.inputs).index(key)))
+
+    def _content(self, k: int) -> object:
+        operation, data, arguments = self.form[k]
+        return (operation, data, *(self._content(item) for item in arguments))
+
+    def _node(self, k: int) -> int:
+        operation, data, places = self.form[k]
+        if operation == "variable":
+            return self._add(Step("variable", (), self.index[data] - 1) if self.index[data] else Step("input", (), 0))
+        if operation == "number":
+            return self._add(Step("number", (), data))
+        if operation == "constant":
+            return self._constant(data)
+        arguments = [self.number[place] for place in places]
+        if operation == "pieces":
+            table, width = data
+            return self._add(Step("pieces", tuple(arguments), (self.tables.setdefault(table, len(self.tables)), width)))
+        if operation == "div" and self.form[places[1]][0] == "constant":
+            return self._add(Step("mul", (arguments[0], self._constant(self.form[places[1]][1], inverse=True))))
+        return self._add(Step(operation, tuple(arguments)))
+
+
+def _known_before(form: Form) -> set[int]:
+    """Nodes that read a table of time and that no parameter changes, apart from where the table is read.
+
+    Their values are the same for many sets of parameters.  What follows from them by other numbers, or from the time
+    without a table, is computed in the run.
+    """
+    timed: set[int] = set()
+    free: set[int] = set()
+    tabled: set[int] = set()
+    for k, (operation, data, arguments) in enumerate(form):
+        if (operation == "variable" and data != "t") or not timed.issuperset(arguments):
+            continue
+        timed.add(k)
+        if operation == "pieces" or not tabled.isdisjoint(arguments):
+            tabled.add(k)
+        if operation == "pieces" or (operation != "constant" and free.issuperset(arguments)):
+            free.add(k)
+    return free & tabled
+
+
+def _needed(form: Form, results: Sequence[int], before: set[int]) -> set[int]:
+    """Nodes that are used in a run: what is known before needs nothing else."""
+    needed: set[int] = set()
+    left = list(results)
+    while left:
+        k = left.pop()
+        if k not in needed:
+            needed.add(k)
+            left += () if k in before else form[k][2]
+    return needed

@@ -1,0 +1,142 @@
+"""What is known of a bench before it is measured."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.trial import FloatArray, Trial
+from hdrive_mbs.errors import ParameterError, RecordError, unknown_place
+from hdrive_mbs.records.record import Record
+from hdrive_mbs.scene import Scene
+
+HELD_OUT, BLOCKS = 0.25, 12
+"""Share of each record that no fit sees, and the number of blocks it is cut into."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Uncertain:
+    """A parameter that is not known exactly.
+
+    paths : of the fields of the scene that hold it (several that are alike)
+    sigma : standard deviation of its logarithm, about the relative error
+    """
+
+    paths: tuple[str, ...]
+    sigma: float
+
+    def __post_init__(self) -> None:
+        if isinstance(self.paths, str) or not self.paths:
+            raise ParameterError(f"paths = {self.paths!r}: give the paths of the fields as a tuple, like ('motor.inertia',).")
+        if not (self.sigma > 0.0 and math.isfinite(self.sigma)):
+            raise ParameterError(f"{self.paths[0]}: sigma = {self.sigma:g} must be greater than 0; leave out what is known exactly.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Input:
+    """A column of the records that drives the scene.
+
+    path : field that takes it;  law : (times, values) -> what is put there, e.g. a TableTorque
+    """
+
+    path: str
+    law: Callable[[tuple[float, ...], tuple[float, ...]], Any]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Bench:
+    """A nominal scene, how well its parameters are known, and what the columns of its records are.
+
+    scene : as the data sheets say, its inputs replaceable
+    knowledge : parameters that are not exact, by a name of your own
+    measured : columns to compare;  inputs : columns that drive the scene
+    angles, speeds : of bodies at the start of every record; 0 if not given
+    names : (family, place of the scene) -> (family, place) as the bench's people call them, for reports
+
+    Subclasses override ``trials`` where a record needs more than its columns put into the scene.
+    """
+
+    scene: Scene
+    knowledge: Mapping[str, Uncertain]
+    measured: Mapping[str, Measured]
+    inputs: Mapping[str, Input] = field(default_factory=dict)
+    angles: Mapping[str, float] = field(default_factory=dict)
+    speeds: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        known = self.scene.parameters()
+        for name, item in self.knowledge.items():
+            for path in item.paths:
+                if path not in known:
+                    raise unknown_place(f"path of {name!r}", path, known, "This scene")
+        channels = {channel.name for channel in self.scene.network().channels}
+        for column, measured in self.measured.items():
+            if measured.channel not in channels:
+                raise unknown_place(f"channel of column {column!r}", measured.channel, channels, "This scene")
+
+    def nominal(self, name: str) -> tuple[float, ...]:
+        """Nominal values of a parameter at each of its paths."""
+        known = self.scene.parameters()
+        return tuple(float(known[path].value) for path in self.knowledge[name].paths)
+
+    def trials(self, record: Record) -> tuple[Trial, ...]:
+        """The record laid beside the scene.  Raises RecordError where columns are missing or the clock is uneven."""
+        columns = self.columns_of(record)
+        times = record.times
+        every = even_step(record)
+        changes = {
+            item.path: item.law(tuple((times - times[0]).tolist()), tuple(columns[name].tolist())) for name, item in self.inputs.items()
+        }
+        return (
+            Trial(
+                name=record.name,
+                scene=self.scene.replacing(changes),
+                every=every,
+                columns={name: columns[name] for name in self.measured if name in columns},
+                measured={name: item for name, item in self.measured.items() if name in columns},
+                held_out=held_out(len(times), record.name),
+                angles=self.angles,
+                speeds=self.speeds,
+            ),
+        )
+
+    def columns_of(self, record: Record) -> dict[str, FloatArray]:
+        """Values of the columns that this bench knows; all inputs must be there, and one measured column at least."""
+        found = {
+            name: np.asarray(record.channels[name].values, float) for name in (*self.measured, *self.inputs) if name in record.channels
+        }
+        missing = [name for name in self.inputs if name not in found]
+        if missing or not any(name in found for name in self.measured):
+            name = (missing or list(self.measured))[0]
+            raise RecordError(
+                f"Record {record.name!r} has no column {name!r}, which {'drives the scene' if missing else 'the bench measures'}."
+                f" It has: {', '.join(record.channels)}."
+            )
+        return found
+
+
+def even_step(record: Record) -> float:
+    """Sample time [s] of a record.  Raises RecordError for fewer than 64 samples or an uneven clock."""
+    if len(record) < 64:
+        raise RecordError(f"Record {record.name!r} has {len(record)} samples; a diagnosis needs at least 64.")
+    steps = np.diff(record.times)
+    every = float((record.times[-1] - record.times[0]) / (len(record) - 1))
+    if not np.all(np.abs(steps - every) <= 1e-3 * every):
+        raise RecordError(
+            f"Record {record.name!r} is not sampled evenly (steps from {steps.min():.6g} s to {steps.max():.6g} s);"
+            " repair or resample it first (see records.md)."
+        )
+    return every
+
+
+def held_out(samples: int, name: str) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    """Blocks of a record that no fit sees: one of four, spread evenly; which ones depends on the record's name."""
+    block = np.arange(samples) * BLOCKS // samples
+    period = round(1.0 / HELD_OUT)
+    first = sum(name.encode()) % (period - 1) + 1
+    return np.asarray(block % period == first)

@@ -1,0 +1,166 @@
+"""Effects and places that are tried: every law of the library, and a user's own, wherever it makes sense."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import inspect
+import itertools
+import pkgutil
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from hdrive_mbs import effects as library
+from hdrive_mbs.diagnosis.hypothesis import Added
+from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import HdriveError, ParameterError
+from hdrive_mbs.network.network import Network
+from hdrive_mbs.quantities import Quantity, snake_case
+from hdrive_mbs.scene import Scene
+
+SHAPES = 3
+"""Values of each shape from which a search begins, where the law names none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """One law at one place, with the points from which its search starts.
+
+    starts : the effect with start values, strengths at the low end of their typical ranges
+    first : those of them for a first look: shapes in the middle of their ranges, all choices
+    """
+
+    kind: type[Effect]
+    at: str
+    starts: tuple[Added, ...]
+    first: tuple[Added, ...]
+
+    @property
+    def label(self) -> tuple[str, str]:
+        """(family, place): what is reported."""
+        return self.kind.family, self.at
+
+
+def known_effects() -> list[type[Effect]]:
+    """Every effect that can be searched: of the library, and whatever has been imported that subclasses Effect."""
+    for module in pkgutil.iter_modules(library.__path__):
+        importlib.import_module(f"{library.__name__}.{module.name}")
+    found: list[type[Effect]] = []
+
+    def visit(kind: type[Effect]) -> None:
+        for child in kind.__subclasses__():
+            if not inspect.isabstract(child) and _searched(child) and child not in found:
+                found.append(child)
+            visit(child)
+
+    visit(Effect)
+    return sorted(found, key=lambda kind: (kind.family, kind.__name__))
+
+
+def _quantities(kind: type[Effect]) -> dict[str, Quantity]:
+    pairs = ((item.name, item.metadata.get("quantity")) for item in dataclasses.fields(kind))
+    return {name: quantity for name, quantity in pairs if quantity is not None}
+
+
+def _searched(kind: type[Effect]) -> bool:
+    """Whether it has something to search; a law over a whole series of numbers has too much."""
+    fields = [quantity for quantity in _quantities(kind).values() if quantity.typical is not None]
+    return bool(fields) and not any(quantity.sequence for quantity in fields)
+
+
+def candidates(scene: Scene, kinds: Iterable[type[Effect]] | None = None) -> list[Candidate]:
+    """Every law at every place of a scene where it may sit.
+
+    kinds : effect classes to try; all known ones if not given
+
+    Raises ParameterError for a class that says nothing to search, or for a user's effect whose ``places`` raises.
+    """
+    network = scene.network()
+    found = []
+    for kind in known_effects() if kinds is None else kinds:
+        if not (isinstance(kind, type) and issubclass(kind, Effect)):
+            raise ParameterError(f"{kind!r} is no effect class; give classes that subclass Effect, like CoulombStribeckFriction.")
+        if not _searched(kind):
+            raise ParameterError(
+                f"{kind.__name__} has nothing to search: give its fields a typical range, parameter(..., typical=(low, high))."
+            )
+        for place in _places(kind, network):
+            name = _free_name(scene, kind)
+            starts = tuple(item for effect in _starts(kind) if _fits(scene, item := Added(effect, place, name)))
+            if starts:
+                found.append(Candidate(kind, place, starts, _middle(starts)))
+    return found
+
+
+def _middle(starts: tuple[Added, ...]) -> tuple[Added, ...]:
+    """Starts whose searched shapes are in the middle of those that occur; every combination of the others."""
+    kind = type(starts[0].effect)
+    shapes = [name for name, item in _quantities(kind).items() if item.typical is not None and name in _varied(starts)]
+    middle = {}
+    for name in shapes:
+        values = sorted({getattr(item.effect, name) for item in starts})
+        middle[name] = values[len(values) // 2]
+    return tuple(item for item in starts if all(getattr(item.effect, name) == value for name, value in middle.items())) or starts[:1]
+
+
+def _varied(starts: tuple[Added, ...]) -> set[str]:
+    names = [item.name for item in dataclasses.fields(starts[0].effect)]
+    return {name for name in names if len({repr(getattr(item.effect, name)) for item in starts}) > 1}
+
+
+def _free_name(scene: Scene, kind: type[Effect]) -> str:
+    taken = {placed.name for placed in scene.effects} | set(scene.parts)
+    stem = name = snake_case(kind.__name__)
+    number = 2
+    while name in taken:
+        name, number = f"{stem}_{number}", number + 1
+    return name
+
+
+def _places(kind: type[Effect], network: Network) -> tuple[str, ...]:
+    try:
+        return kind.places(network)
+    except HdriveError:
+        return ()
+    except Exception as error:
+        raise ParameterError(f"{kind.__name__}.places raised {type(error).__name__}: {error}. Mend it, or leave the class out.") from error
+
+
+def _fits(scene: Scene, item: Added) -> bool:
+    """Whether an effect can be put there at all."""
+    try:
+        scene.with_effect(item.effect, at=item.at)
+    except HdriveError:
+        return False
+    except Exception as error:
+        kind = type(item.effect).__name__
+        raise ParameterError(
+            f"{kind} at {item.at!r} raised {type(error).__name__}: {error}. Mend its law, or leave the class out."
+        ) from error
+    return True
+
+
+def _starts(kind: type[Effect]) -> Iterator[Effect]:
+    """The effect at each combination of start values of its shapes and choices."""
+    chosen: dict[str, tuple[Any, ...]] = {}
+    phases = {phase for _, phase in kind.vectors}
+    for name, quantity in _quantities(kind).items():
+        if name in kind.starts:
+            chosen[name] = tuple(kind.starts[name])
+        elif quantity.typical is not None and name not in phases:
+            low, high = quantity.typical
+            if low < 0.0:
+                chosen[name] = (0.0,)
+            elif quantity.low == 0.0:
+                chosen[name] = (low,)
+            else:
+                ends = [(k + 0.5) / SHAPES for k in range(SHAPES)]
+                chosen[name] = tuple(low * (high / low) ** end for end in ends)
+    for name, values in kind.starts.items():
+        chosen.setdefault(name, tuple(values))
+    for combination in itertools.product(*chosen.values()):
+        try:
+            yield kind(**dict(zip(chosen, combination, strict=True)))
+        except HdriveError:
+            continue

@@ -1,0 +1,193 @@
+"""What is tried: the nominal scene with effects at places, and which parameters are let loose."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.diagnosis.unknowns import Factor, Shape, Signed, Strength, Unknown, Vector
+from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.quantities import Quantity
+from hdrive_mbs.scene import PlacedEffect, Scene
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Added:
+    """An effect at a place, with the values from which its search starts.
+
+    effect : with start values in all its fields;  at : place;  name : in the scene
+    """
+
+    effect: Effect
+    at: str
+    name: str
+
+    @property
+    def label(self) -> tuple[str, str]:
+        """(family, place)."""
+        return type(self.effect).family, self.at
+
+    @cached_property
+    def unknowns(self) -> tuple[Unknown, ...]:
+        """What of it is searched, in the order of its fields."""
+        return unknowns_of(self.effect, self.name)
+
+
+def unknowns_of(effect: Effect, name: str) -> tuple[Unknown, ...]:
+    """The unknowns of an effect's fields with typical ranges."""
+    kind = type(effect)
+    quantities = {item.name: item.metadata.get("quantity") for item in dataclasses.fields(kind)}
+    fields: dict[str, Quantity] = {key: item for key, item in quantities.items() if item is not None and item.typical is not None}
+    phases = {phase: amplitude for amplitude, phase in kind.vectors}
+    found: list[Unknown] = []
+    for key, item in fields.items():
+        assert item.typical is not None
+        low, high = item.typical
+        path = f"{name}.{key}"
+        value = float(getattr(effect, key))
+        if key in phases:
+            continue
+        if key in dict(kind.vectors):
+            found.append(Vector(path, f"{name}.{dict(kind.vectors)[key]}", low, high, value or low))
+        elif low < 0.0:
+            found.append(Signed(path, high, -np.inf if item.low is None else item.low, np.inf if item.high is None else item.high))
+        elif item.low == 0.0:
+            found.append(Strength(path, low, high, value or low, np.inf if item.high is None else item.high))
+        else:
+            bottom = item.low if item.low is not None else 0.0
+            found.append(Shape(path, low, high, bottom, np.inf if item.high is None else item.high))
+    return tuple(found)
+
+
+def start_of(unknown: Unknown, effect: Effect, name: str) -> tuple[float, ...]:
+    """Search coordinates of the values that an effect has."""
+    field_name = unknown.path.removeprefix(f"{name}.")
+    value = float(getattr(effect, field_name))
+    match unknown:
+        case Vector(scale=scale, phase_path=phase_path):
+            phase = float(getattr(effect, phase_path.removeprefix(f"{name}.")))
+            return (value / scale * float(np.cos(phase)), value / scale * float(np.sin(phase)))
+        case Strength(scale=scale):
+            return (value / scale,)
+        case Signed(half_width=width):
+            return (2.0 * value / width,)
+        case Shape():
+            return (unknown.coordinate(value),)
+    raise TypeError(unknown)
+
+
+@dataclass(frozen=True, eq=False)
+class Hypothesis:
+    """Nominal parameters with their uncertainty, and effects that are added.
+
+    factors : nominal parameters;  added : effects, none for the nominal model
+    loose : names of parameters with a prior that is wider, by this factor
+    """
+
+    factors: tuple[Factor, ...]
+    added: tuple[Added, ...] = ()
+    loose: Mapping[str, float] = field(default_factory=dict)
+
+    @cached_property
+    def unknowns(self) -> tuple[Unknown, ...]:
+        """All unknowns: factors first."""
+        factors = [dataclasses.replace(item, wide=self.loose.get(item.name, 1.0)) for item in self.factors]
+        return (*factors, *(unknown for item in self.added for unknown in item.unknowns))
+
+    @cached_property
+    def slices(self) -> tuple[slice, ...]:
+        """Where each unknown sits among the search coordinates."""
+        ends = np.cumsum([unknown.size for unknown in self.unknowns])
+        return tuple(slice(int(end) - unknown.size, int(end)) for unknown, end in zip(self.unknowns, ends, strict=True))
+
+    @property
+    def size(self) -> int:
+        """Number of search coordinates."""
+        return self.slices[-1].stop if self.slices else 0
+
+    @property
+    def nominal_size(self) -> int:
+        """Number of those of nominal parameters, which come first."""
+        return len(self.factors)
+
+    @property
+    def label(self) -> str:
+        """In words, for logs and reports."""
+        parts = [f"{type(item.effect).__name__} at {item.at}" for item in self.added] + [f"{name} off" for name in self.loose]
+        return " + ".join(parts) or "nominal"
+
+    def start(self, nominal: FloatArray | None = None) -> FloatArray:
+        """Coordinates of the start values; the nominal ones as given (in prior standard deviations of the nominal model)."""
+        z = np.zeros(self.size)
+        if nominal is not None:
+            z[: len(self.factors)] = nominal[: len(self.factors)]
+            for k, item in enumerate(self.factors):
+                z[k] /= self.loose.get(item.name, 1.0)
+        at = len(self.factors)
+        for item in self.added:
+            for unknown in item.unknowns:
+                z[at : at + unknown.size] = start_of(unknown, item.effect, item.name)
+                at += unknown.size
+        return z
+
+    def nominal_part(self, z: FloatArray) -> FloatArray:
+        """Nominal coordinates in standard deviations of the nominal prior."""
+        return np.array([z[k] * self.loose.get(item.name, 1.0) for k, item in enumerate(self.factors)])
+
+    def values(self, z: FloatArray) -> dict[str, float]:
+        """Values by path."""
+        found: dict[str, float] = {}
+        for unknown, part in zip(self.unknowns, self.slices, strict=True):
+            found |= unknown.values(z[part].tolist())
+        return found
+
+    def clipped(self, z: FloatArray) -> FloatArray:
+        """The nearest allowed coordinates."""
+        result = z.copy()
+        for unknown, part in zip(self.unknowns, self.slices, strict=True):
+            result[part] = unknown.clipped(z[part].tolist())
+        return result
+
+    def scene(self, scene: Scene, z: FloatArray) -> Scene:
+        """The scene with these parameters and effects.
+
+        Raises ParameterError where values do not go together.
+        """
+        values = self.values(z)
+        placed = []
+        for item in self.added:
+            prefix = f"{item.name}."
+            own = {path.removeprefix(prefix): values.pop(path) for path in list(values) if path.startswith(prefix)}
+            placed.append(PlacedEffect(name=item.name, effect=item.effect.replacing(**own), at=item.at))
+        changed = scene.replacing(values)
+        return dataclasses.replace(changed, effects=(*changed.effects, *placed)) if placed else changed
+
+    def log_prior(self, z: FloatArray) -> float:
+        """Logarithm of the prior density."""
+        return sum(unknown.log_prior(z[part].tolist()) for unknown, part in zip(self.unknowns, self.slices, strict=True))
+
+    def prior_cost(self, z: FloatArray) -> float:
+        """Of the normal priors that the fit uses: sum of precision z^2/2."""
+        return 0.5 * float(self.precisions @ z**2)
+
+    @cached_property
+    def precisions(self) -> FloatArray:
+        """Of the normal priors, by coordinate."""
+        return np.concatenate([np.full(unknown.size, unknown.precision) for unknown in self.unknowns]) if self.unknowns else np.zeros(0)
+
+    def curvatures(self, z: FloatArray) -> FloatArray:
+        """Of the priors, by coordinate."""
+        pairs = zip(self.unknowns, self.slices, strict=True)
+        return np.concatenate([np.full(unknown.size, unknown.curvature(z[part].tolist())) for unknown, part in pairs])
+
+    def steps(self, z: FloatArray) -> FloatArray:
+        """Differences for numerical derivatives, by coordinate."""
+        pairs = zip(self.unknowns, self.slices, strict=True)
+        return np.concatenate([np.full(unknown.size, unknown.step(z[part].tolist())) for unknown, part in pairs])

@@ -1,0 +1,200 @@
+"""What a diagnosis says: verdict, cause, place, gap before and after, and what it cannot tell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.scene import Scene
+
+FloatArray = npt.NDArray[np.float64]
+
+VERDICTS: Mapping[str, str] = {
+    "none": "no gap beyond noise and parameter tolerance",
+    "effect": "an effect is missing from the model",
+    "parameter": "a parameter is off by more than its tolerance",
+    "sensor": "a sensor is off",
+    "unknown": "a gap that nothing in the library explains",
+}
+"""Verdict -> in words."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Estimate:
+    """An identified parameter.
+
+    name : path in the improved scene;  unit, doc : of its field
+    value, low, high : with its 95 % interval;  nominal, tolerance : value and relative standard deviation it had before,
+    nan for the parameters of an effect;  identifiable : whether the records say more of it than was known before
+    """
+
+    name: str
+    unit: str
+    doc: str
+    value: float
+    low: float
+    high: float
+    nominal: float = float("nan")
+    tolerance: float = float("nan")
+    identifiable: bool = True
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cause:
+    """A cause that was tried, or is claimed.
+
+    effect, at : family and place; ("parameter", group name) for parameters;  kind : of the effect, or "parameter"
+    law : class of the law that did best;  signature : what an engineer would see, in words
+    probability : calibrated;  log_odds : evidence against the refitted nominal model
+    fit, held_out : mean square of the whitened residuals, 1 for noise alone
+    """
+
+    effect: str
+    at: str
+    kind: str
+    law: str
+    probability: float
+    log_odds: float
+    fit: float
+    held_out: float
+    signature: str = ""
+    parameters: tuple[Estimate, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """A place where an unknown force or error would explain residuals.
+
+    at : name in the scene;  probability : among all places;  gain : log likelihood against none
+    share : of the energy of the gap that a signal there can explain (0 to 1);  tied : places that the records cannot tell from it
+    """
+
+    at: str
+    probability: float
+    gain: float
+    share: float
+    tied: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Misfit:
+    """Root mean square of a misfit, with its 95 % interval from a block bootstrap."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gap:
+    """Root mean square of what the fit did not see, in standard deviations of the noise and in the channel's unit.
+
+    record, column : where; empty for all together
+    nominal : with the data sheet's values;  refit : with refitted parameters;  effect : with the claimed cause besides
+    floor : of the noise, 1 in these units;  noise : standard deviation in the channel's unit, which turns them into it
+    """
+
+    record: str
+    column: str
+    unit: str
+    noise: float
+    nominal: Misfit
+    refit: Misfit
+    effect: Misfit
+    floor: float = 1.0
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DomainBin:
+    """Part of the operating range with the misfit of the refitted nominal model there.
+
+    over : "speed", "torque", "direction", "order", "frequency" or "time";  low, high : its ends, in unit
+    excess : mean square minus 1;  samples : number;  after : excess with the claimed cause
+    """
+
+    over: str
+    unit: str
+    low: float
+    high: float
+    excess: float
+    after: float
+    samples: int
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trace:
+    """One column of one record, thinned for pictures.
+
+    times : s;  measured, nominal, refit, effect : in the column's unit, offsets taken out;  held_out : where no fit looked
+    """
+
+    record: str
+    column: str
+    unit: str
+    noise: float
+    times: FloatArray
+    measured: FloatArray
+    nominal: FloatArray
+    refit: FloatArray
+    effect: FloatArray
+    held_out: npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Separation:
+    """How well two causes can be told apart by a record from a menu.
+
+    detectability : least squared distance of their signatures in noise units, parameters adapted (below 25: not distinguishable)
+    """
+
+    record: str
+    first: tuple[str, str]
+    second: tuple[str, str]
+    detectability: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Diagnosis:
+    """The answer.
+
+    verdict : one of VERDICTS;  causes : what is claimed: one, two, or none
+    indistinguishable : (effect, place) that these records cannot tell from the claim
+    ranking : everything that was fitted, most probable first, "none" included
+    where : places by latent-force localisation;  gaps : all together first, then by record and column
+    parameters : nominal parameters after the fit;  improved : the scene with the cause, ready to be saved and simulated
+    next_records : for a group that cannot be told apart, records that would separate it, best first
+    notes : what a reader has to know (fits that did not converge, verification on the engine, ...)
+    """
+
+    scene: Scene
+    improved: Scene
+    records: tuple[str, ...]
+    verdict: str
+    causes: tuple[Cause, ...]
+    indistinguishable: tuple[tuple[str, str], ...]
+    ranking: tuple[Cause, ...]
+    where: tuple[Place, ...]
+    gaps: tuple[Gap, ...]
+    parameters: tuple[Estimate, ...]
+    domain: tuple[DomainBin, ...] = ()
+    traces: tuple[Trace, ...] = ()
+    next_records: tuple[Separation, ...] = ()
+    notes: tuple[str, ...] = ()
+    seconds: float = 0.0
+    versions: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def gap(self) -> Gap:
+        """All records and columns together."""
+        return self.gaps[0]
+
+    @property
+    def closed(self) -> float:
+        """Share of the gap's energy above the noise that the claim closes, held out: 1 - (e^2 - f^2)/(n^2 - f^2)."""
+        gap = self.gap
+        open_before = gap.nominal.value**2 - gap.floor**2
+        left = max(gap.effect.value, gap.floor) ** 2 - gap.floor**2
+        return 1.0 - left / open_before if open_before > 0.0 else 0.0

@@ -1,0 +1,194 @@
+"""The search for what is missing: nominal fit, quick looks at everything, joint fits of the best, evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from hdrive_mbs.diagnosis.candidates import Candidate
+from hdrive_mbs.diagnosis.evidence import log_evidence
+from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian
+from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.screening import Look, Screen
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.unknowns import Factor
+from hdrive_mbs.errors import AnalysisError
+
+Label = tuple[str, str]
+
+LOOSE = 10.0
+"""Times its prior standard deviation that a suspected parameter may be off."""
+COARSE = 3e-3
+"""Relative change of the cost that ends a fit whose misfit is not explained anyway."""
+BRIEF, LAWS, STEPS = 10, 2, 3
+"""Labels that are looked at closer, laws of each that get joint steps, and how many of these."""
+KEPT, CONVERGED = 6, 25
+"""Laws that are fitted to the end, and steps that this may take."""
+
+
+@dataclass(frozen=True, eq=False)
+class Suspect:
+    """Something that may explain the gap: a label and the hypotheses that stand for it, from several starts.
+
+    first : those for a first look;  all : every start
+    """
+
+    label: Label
+    law: str
+    first: tuple[Hypothesis, ...]
+    all: tuple[Hypothesis, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A fitted suspect with the logarithm of its evidence over that of the model it adds to."""
+
+    suspect: Suspect
+    fitted: Fitted
+    log_odds: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What a search found.
+
+    base : the model without the suspects, refitted;  found : fitted laws, best first, several of one label
+    looks : cost of the first look at each law
+    """
+
+    base: Fitted
+    found: tuple[Found, ...]
+    looks: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def labels(self) -> tuple[Found, ...]:
+        """The best law of each label, best first."""
+        best: dict[Label, Found] = {}
+        for item in self.found:
+            best.setdefault(item.suspect.label, item)
+        return tuple(best.values())
+
+
+def suspects(base: Hypothesis, groups: Mapping[str, Sequence[str]], tried: Sequence[Candidate]) -> list[Suspect]:
+    """Parameters that may be off, by group, and effects that may be missing, each added to a base."""
+    taken = {(type(item.effect), item.at) for item in base.added}
+    found = []
+    for group, names in groups.items():
+        if not set(names) & set(base.loose):
+            loose = {**base.loose, **dict.fromkeys(names, LOOSE)}
+            one = (Hypothesis(base.factors, base.added, loose),)
+            found.append(Suspect(("parameter", group), "parameter", one, one))
+    for item in tried:
+        if (item.kind, item.at) in taken:
+            continue
+
+        def with_(starts: Sequence[Added]) -> tuple[Hypothesis, ...]:
+            return tuple(Hypothesis(base.factors, (*base.added, _renamed(added, base)), base.loose) for added in starts)
+
+        found.append(Suspect(item.label, item.kind.__name__, with_(item.first), with_(item.starts)))
+    return found
+
+
+def _renamed(added: Added, base: Hypothesis) -> Added:
+    taken = {item.name for item in base.added}
+    name, number = added.name, 2
+    while name in taken:
+        name, number = f"{added.name}_{number}", number + 1
+    return Added(added.effect, added.at, name)
+
+
+Report = Callable[[str, int, int], None]
+
+
+def fit_nominal(simulator: Simulator, factors: Sequence[Factor]) -> Fitted:
+    """The nominal model, refitted.  Raises AnalysisError where it cannot be simulated."""
+    nominal = Hypothesis(factors=tuple(factors))
+    residuals = simulator.residuals(nominal, [np.zeros(nominal.size)])[0]
+    if residuals is None:
+        raise AnalysisError("The nominal scene cannot be simulated through the records; look at its start values and inputs.")
+    return fit(simulator, nominal, np.zeros(nominal.size), steps=40, share=COARSE, begin=residuals)
+
+
+def search(
+    simulator: Simulator,
+    base: Fitted,
+    groups: Mapping[str, Sequence[str]],
+    tried: Sequence[Candidate],
+    *,
+    report: Report | None = None,
+) -> Search:
+    """Look at everything that may be missing from a fitted model, and fit the best together with its parameters.
+
+    One simple law stands for each label in the first look.  The best labels are looked at with all laws and starts,
+    the best of those get a few joint steps with their own Jacobians, and the best of these are fitted to the end.
+    """
+    said = report or (lambda stage, done, total: None)
+    columns = jacobian(simulator, base.hypothesis, base.z, base.residuals)
+    screen = Screen(simulator, base, columns)
+    everything = suspects(base.hypothesis, groups, tried)
+    looks: list[tuple[Suspect, Look]] = []
+    simple = _simplest(everything)
+    for k, suspect in enumerate(simple):
+        said("looking at candidates", k, len(simple))
+        look = screen.look(suspect.first)
+        if look is not None:
+            looks.append((suspect, look))
+    looks.sort(key=lambda pair: pair[1].cost)
+    costs = {f"{suspect.law} at {suspect.label[1]}": look.cost for suspect, look in looks}
+    chosen = [suspect.label for suspect, _ in looks[:BRIEF]]
+    closer: list[tuple[Suspect, Look]] = []
+    laws = [suspect for suspect in everything if suspect.label in chosen]
+    for k, suspect in enumerate(laws):
+        said("looking closer", k, len(laws))
+        look = screen.look(suspect.all)
+        if look is not None:
+            closer.append((suspect, look))
+    closer.sort(key=lambda pair: pair[1].cost)
+    brief = []
+    picked = _picked(closer, laws=LAWS)
+    for k, (suspect, look) in enumerate(picked):
+        said("a few joint steps", k, len(picked))
+        brief.append(Found(suspect, fit(simulator, look.hypothesis, look.z, steps=STEPS, begin=look.residuals)))
+    brief.sort(key=lambda item: item.fitted.cost)
+    final = []
+    for k, item in enumerate(brief[:KEPT]):
+        said("fitting the best", k, KEPT)
+        final.append(scored(Found(item.suspect, further(simulator, item.fitted)), base))
+    final.sort(key=lambda item: -item.log_odds)
+    return Search(base=base, found=tuple(final), looks=costs)
+
+
+def scored(found: Found, base: Fitted) -> Found:
+    """With its log odds against the model it adds to."""
+    return Found(found.suspect, found.fitted, log_evidence(found.fitted) - log_evidence(base))
+
+
+def further(simulator: Simulator, fitted: Fitted, steps: int = CONVERGED, share: float = 1e-4) -> Fitted:
+    """Fitted on, from where it stands."""
+    if fitted.converged and share >= 1e-4:
+        return fitted
+    return fit(simulator, fitted.hypothesis, fitted.z, steps=steps, share=share, begin=fitted.residuals)
+
+
+def _simplest(everything: Sequence[Suspect]) -> list[Suspect]:
+    """The law with the fewest unknowns of each label."""
+    best: dict[Label, Suspect] = {}
+    for suspect in everything:
+        known = best.get(suspect.label)
+        if known is None or suspect.all[0].size < known.all[0].size:
+            best[suspect.label] = suspect
+    return list(best.values())
+
+
+def _picked(looks: Sequence[tuple[Suspect, Look]], *, laws: int) -> list[tuple[Suspect, Look]]:
+    """The best laws of each label, so many of each."""
+    seen: dict[Label, int] = {}
+    chosen = []
+    for suspect, look in looks:
+        number = seen.get(suspect.label, 0)
+        if number < laws:
+            seen[suspect.label] = number + 1
+            chosen.append((suspect, look))
+    return chosen

@@ -1,0 +1,57 @@
+"""One record laid beside the scene that is to reproduce it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.scene import Scene
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trial:
+    """A scene with the inputs of one record in it, and what was measured.
+
+    name : of the record, and of the view where one record has several
+    scene : the nominal scene, driven as the record was
+    every : sample time [s]; samples are at 0, every, 2 every, ...
+    columns : measured values by column, each of shape (n,); nan where there is none
+    measured : what each of these columns is
+    held_out : samples that no fit may see, shape (n,)
+    angles, speeds : of bodies at the start [rad, m, rad/s, m/s]; 0 if not given
+    settled : whether lateral coordinates start at rest where the forces on them balance
+    """
+
+    name: str
+    scene: Scene
+    every: float
+    columns: Mapping[str, FloatArray]
+    measured: Mapping[str, Measured]
+    held_out: npt.NDArray[np.bool_]
+    angles: Mapping[str, float] = field(default_factory=dict)
+    speeds: Mapping[str, float] = field(default_factory=dict)
+    settled: bool = False
+
+    def __post_init__(self) -> None:
+        if set(self.columns) != set(self.measured):
+            raise ParameterError(f"Trial {self.name!r}: columns {sorted(self.columns)} and measured {sorted(self.measured)} differ.")
+        for name, values in self.columns.items():
+            if len(values) != self.samples:
+                raise ParameterError(f"Trial {self.name!r}: column {name!r} has {len(values)} samples, held_out {self.samples}.")
+
+    @property
+    def samples(self) -> int:
+        """Number of samples."""
+        return len(self.held_out)
+
+    @property
+    def times(self) -> FloatArray:
+        """Times of the samples [s]."""
+        return self.every * np.arange(self.samples)

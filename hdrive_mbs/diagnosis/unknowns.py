@@ -1,0 +1,205 @@
+"""Scales on which a search moves: plain numbers near zero or one in place of parameters of all units.
+
+Each unknown turns one or two search coordinates into values of fields and knows its prior:
+
+* Factor: a nominal parameter p = p0 exp(sigma z) with z ~ N(0, 1)
+* Strength: a size s z >= 0 of an effect that vanishes at 0; its logarithm is uniform over the typical range
+* Shape: a positive field exp(m + w z), z ~ N(0, 1), the typical range at z = -2 .. 2
+* Signed: a field of either sign, w z, z ~ N(0, 1), the typical range at z = -2 .. 2
+* Vector: amplitude and phase as (amplitude cos, amplitude sin)/s; logarithm of the amplitude and phase uniform
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+BEYOND = 4.0
+"""Times the end of a typical range that a fitted strength may go."""
+SMALLEST = 1e-3
+"""Of its scale: a strength below it is zero for the prior."""
+
+
+@dataclass(frozen=True)
+class Unknown(ABC):
+    """Something to find.  ``path`` is where it sits: a path of the scene, or the first one of several."""
+
+    path: str
+
+    @property
+    def size(self) -> int:
+        """Number of search coordinates."""
+        return 1
+
+    @abstractmethod
+    def values(self, z: Sequence[float]) -> dict[str, float]:
+        """Values by path of the fields."""
+
+    @property
+    def precision(self) -> float:
+        """Of the normal prior that the fit uses on each coordinate; 0 where it has none."""
+        return 1.0
+
+    @abstractmethod
+    def log_prior(self, z: Sequence[float]) -> float:
+        """Logarithm of the prior density over the search coordinates."""
+
+    def clipped(self, z: Sequence[float]) -> tuple[float, ...]:
+        """The nearest allowed coordinates."""
+        return tuple(z)
+
+    def curvature(self, z: Sequence[float]) -> float:
+        """Of the prior, at least: what keeps a coordinate that the records do not determine from adding evidence."""
+        return self.precision
+
+    def step(self, z: Sequence[float]) -> float:
+        """Difference for numerical derivatives."""
+        return 0.01
+
+
+def _normal(z: Sequence[float]) -> float:
+    return sum(-0.5 * value**2 - 0.5 * math.log(2.0 * math.pi) for value in z)
+
+
+@dataclass(frozen=True)
+class Factor(Unknown):
+    """A nominal parameter; ``wide`` widens its prior where the parameter itself is under suspicion."""
+
+    name: str
+    nominal: Mapping[str, float]
+    sigma: float
+    wide: float = 1.0
+
+    def values(self, z: Sequence[float]) -> dict[str, float]:
+        return {path: value * math.exp(self.sigma * self.wide * z[0]) for path, value in self.nominal.items()}
+
+    def log_prior(self, z: Sequence[float]) -> float:
+        return _normal(z)
+
+    def clipped(self, z: Sequence[float]) -> tuple[float, ...]:
+        limit = math.log(20.0) / (self.sigma * self.wide)
+        return (min(max(z[0], -limit), limit),)
+
+    def step(self, z: Sequence[float]) -> float:
+        return 0.01 / self.wide
+
+
+@dataclass(frozen=True)
+class Strength(Unknown):
+    """A size that is zero without the effect."""
+
+    low: float
+    high: float
+    scale: float
+    limit: float = math.inf
+
+    def values(self, z: Sequence[float]) -> dict[str, float]:
+        return {self.path: self.scale * z[0]}
+
+    @property
+    def precision(self) -> float:
+        return 0.0
+
+    def log_prior(self, z: Sequence[float]) -> float:
+        return -math.log(max(z[0], SMALLEST) * math.log(self.high / self.low))
+
+    def clipped(self, z: Sequence[float]) -> tuple[float, ...]:
+        return (min(max(z[0], 0.0), min(BEYOND * self.high, self.limit) / self.scale),)
+
+    def curvature(self, z: Sequence[float]) -> float:
+        return 1.0 / max(z[0], SMALLEST) ** 2
+
+    def step(self, z: Sequence[float]) -> float:
+        return 0.003 * max(z[0], 0.1)
+
+
+@dataclass(frozen=True)
+class Shape(Unknown):
+    """A positive field."""
+
+    low: float
+    high: float
+    bottom: float = 0.0
+    top: float = math.inf
+
+    @property
+    def _middle(self) -> float:
+        return 0.5 * math.log(self.low * self.high)
+
+    @property
+    def _width(self) -> float:
+        return 0.25 * math.log(self.high / self.low)
+
+    def values(self, z: Sequence[float]) -> dict[str, float]:
+        return {self.path: min(max(math.exp(self._middle + self._width * z[0]), self.bottom), self.top)}
+
+    def coordinate(self, value: float) -> float:
+        """The search coordinate of a value."""
+        return (math.log(value) - self._middle) / self._width
+
+    def log_prior(self, z: Sequence[float]) -> float:
+        return _normal(z)
+
+    def clipped(self, z: Sequence[float]) -> tuple[float, ...]:
+        return (min(max(z[0], -3.0), 3.0),)
+
+
+@dataclass(frozen=True)
+class Signed(Unknown):
+    """A field of either sign."""
+
+    half_width: float
+    low: float = -math.inf
+    high: float = math.inf
+
+    def values(self, z: Sequence[float]) -> dict[str, float]:
+        return {self.path: min(max(0.5 * self.half_width * z[0], self.low), self.high)}
+
+    def log_prior(self, z: Sequence[float]) -> float:
+        return _normal(z)
+
+    def clipped(self, z: Sequence[float]) -> tuple[float, ...]:
+        limit = 2.0 * BEYOND
+        low, high = 2.0 * self.low / self.half_width, 2.0 * self.high / self.half_width
+        return (min(max(z[0], -limit, 0.98 * low), limit, 0.98 * high),)
+
+    def step(self, z: Sequence[float]) -> float:
+        return 0.003
+
+
+@dataclass(frozen=True)
+class Vector(Unknown):
+    """Amplitude (``path``) and phase."""
+
+    phase_path: str
+    low: float
+    high: float
+    scale: float
+
+    @property
+    def size(self) -> int:
+        return 2
+
+    @property
+    def precision(self) -> float:
+        return 0.0
+
+    def values(self, z: Sequence[float]) -> dict[str, float]:
+        return {self.path: self.scale * math.hypot(*z), self.phase_path: math.atan2(z[1], z[0])}
+
+    def log_prior(self, z: Sequence[float]) -> float:
+        amplitude = max(math.hypot(*z), SMALLEST)
+        return -math.log(2.0 * math.pi * amplitude**2 * math.log(self.high / self.low))
+
+    def clipped(self, z: Sequence[float]) -> tuple[float, ...]:
+        amplitude, most = math.hypot(*z), BEYOND * self.high / self.scale
+        shrunk = 1.0 if amplitude <= most else most / amplitude
+        return (z[0] * shrunk, z[1] * shrunk)
+
+    def curvature(self, z: Sequence[float]) -> float:
+        return 1.0 / max(math.hypot(*z), SMALLEST) ** 2
+
+    def step(self, z: Sequence[float]) -> float:
+        return 0.003 * max(math.hypot(*z), 0.1)
