@@ -165,7 +165,17 @@ class Described:
         for name in fields:
             if name not in known and name not in inspect.signature(cls).parameters:
                 raise KeywordError(f"No field {name!r}. {cls.__name__} has: {', '.join(known)}.")
+        missing = [field for field in dataclasses.fields(cls) if _is_needed(field) and field.name not in fields]
+        if missing:
+            wanted = inspect.signature(cls).parameters  # of an initialiser of the class's own, not all fields
+            said = [_field_line(field.name, field).strip() for field in missing if field.name in wanted]
+            if said:
+                raise ParameterError(f"{cls.__name__} lacks what has no default: {'; '.join(said)}.")
         return super().__new__(cls)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copies and files make an object without any field first, which a call must not."""
+        return _without_fields, (type(self),), self.__dict__
 
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):
@@ -238,11 +248,19 @@ class Described:
         words = []
         for name, value, metadata in self.fields():
             quantity: Quantity | None = metadata.get("quantity")
-            words.append(f"{name}={_readable(value, quantity)}")
+            words.append(f"{name}={readable(value, quantity)}")
         return f"{type(self).__name__}({', '.join(words)})"
 
     def __str__(self) -> str:
         return self.describe()
+
+
+def _without_fields(cls: type[Described]) -> Described:
+    return object.__new__(cls)
+
+
+def _is_needed(field: dataclasses.Field[Any]) -> bool:
+    return field.init and field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
 
 
 def _field_line(name: str, field: dataclasses.Field[Any]) -> str:
@@ -254,7 +272,7 @@ def _field_line(name: str, field: dataclasses.Field[Any]) -> str:
         if quantity.typical is not None:
             words.append("typically {:g} to {:g}".format(*quantity.typical))
     if field.default is not dataclasses.MISSING and field.default is not None:
-        words.append(f"default {_readable(field.default, None)}")
+        words.append(f"default {readable(field.default, None)}")
     unit = "" if quantity is None else f" [{quantity.unit}]"
     return f"    {name}{unit} : {', '.join(words)}"
 
@@ -284,10 +302,11 @@ def _check_option(where: str, value: Any, annotation: str, doc: str) -> None:
         only_function = annotation.startswith("Callable[")
         if only_function or not isinstance(value, Described):
             wanted = "a Python function" if only_function else "a law of the library or a Python function"
-            raise ParameterError(f"{where} = {_readable(value, None)}: must be {wanted} ({doc}).")
+            raise ParameterError(f"{where} = {readable(value, None)}: must be {wanted} ({doc}).")
 
 
-def _readable(value: Any, quantity: Quantity | None) -> str:
+def readable(value: Any, quantity: Quantity | None) -> str:
+    """A value with its unit, for people."""
     unit = "" if quantity is None or quantity.unit == "1" else f" {quantity.unit}"
     if isinstance(value, float):
         return f"{value:.6g}{unit}"

@@ -69,12 +69,12 @@ PATHS: dict[str, tuple[str, ...]] = {
 
 CHANNELS: dict[str, str] = {
     "motor_torque": "motor.torque",
-    "motor_angle": "motor.angle",
-    "load_angle": "load.angle",
-    "output_torque": "output_shaft.torque",
+    "motor_angle": "motor_encoder",
+    "load_angle": "load_encoder",
+    "output_torque": "torque_sensor",
     "load_torque": "load.torque",
 }
-"""Column of a record -> channel of the scene."""
+"""Column of a record -> channel of the scene: readings of its three sensors, the command of its motor, what is given."""
 
 INPUTS = ("speed_reference", "load_torque")
 OFFSETS: dict[str, float] = {"output_torque": 0.3}
@@ -151,6 +151,9 @@ def build(
             ),
             "output_shaft": hm.Shaft(stiffness=p["output_shaft_stiffness"], damping=p["output_shaft_damping"]),
             "load": hm.Load(inertia=p["load_inertia"], viscous=p["load_viscous"], torque=brake),
+            "motor_encoder": hm.Sensor(quantity="motor.angle"),
+            "load_encoder": hm.Sensor(quantity="load.angle"),
+            "torque_sensor": hm.Sensor(quantity="output_shaft.torque"),
         },
         connections=[("motor", "input_shaft", "wave_generator", "gear", "output_shaft", "load")],
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -94,7 +94,7 @@ def operating_point(scene: Scene, *, motor_speed: float | None = None, torque: f
     if motor_speed is not None:
         return _balance(network, motor_speed)
     guess = _balanced_speed(network)
-    if network.states and not network.motions_drive:
+    if not network.motions_drive and (network.states or len(_holding(network)) < len(_connections(network))):
         with contextlib.suppress(AnalysisError):
             return _balance(network, guess, find_speed=True)
     return _balance(network, guess)
@@ -138,7 +138,7 @@ def _balance(network: Network, speed: float, *, find_speed: bool = False) -> Ope
     n = len(bodies)
     # a train that can turn as a whole is held at its reference body
     held = next((k for k, body in enumerate(bodies) if abs(body.ratio - 1.0) < 1e-9), 0)
-    matrix = _factor_matrix(network, [body.name for body in bodies])
+    matrix = _factor_matrix(_holding(network), [body.name for body in bodies])
     anchored = np.linalg.matrix_rank(matrix, tol=1e-9) == n if len(matrix) else False
     free = [k for k in range(n) if anchored or k != held]
     start_states = np.array([state.initial for state in states])
@@ -194,22 +194,33 @@ def _connections(network: Network) -> list[Connection]:
     return [element for element in network.elements if isinstance(element, Connection)]
 
 
-def _factor_matrix(network: Network, names: list[str]) -> FloatArray:
-    return np.array([[c.factors.get(name, 0.0) for name in names] for c in _connections(network)])
+def _holding(network: Network) -> list[Connection]:
+    """The connections whose torque depends on their stretch: a friction between two places holds nothing."""
+    still = np.zeros(len(network.bodies))
+    moment = _moment(network, 0.0, still, np.array([state.initial for state in network.states]))
+
+    def torques(connection: Connection) -> set[float]:
+        return {float(connection.torque(moment, size, 0.0)) for size in (0.0, *SIZES)}
+
+    return [connection for connection in _connections(network) if len(torques(connection)) > 1]
+
+
+def _factor_matrix(connections: Sequence[Connection], names: list[str]) -> FloatArray:
+    return np.array([[c.factors.get(name, 0.0) for name in names] for c in connections])
 
 
 def _stretched(network: Network, free: list[int], size: float) -> FloatArray:
     """Angles at which every connection is stretched by ``size`` (least squares)."""
-    connections = _connections(network)
+    connections = _holding(network)
     if not connections or not free:
         return np.zeros(len(free))
-    matrix = _factor_matrix(network, [network.bodies[k].name for k in free])
+    matrix = _factor_matrix(connections, [network.bodies[k].name for k in free])
     return np.asarray(np.linalg.lstsq(matrix, np.full(len(connections), size), rcond=None)[0], float)
 
 
 def _static_guess(network: Network, free: list[int], speed: float) -> list[FloatArray]:
     """Angles from equilibrium and the inverse of each law: torques first, then twists (empty where a law never gets there)."""
-    connections = _connections(network)
+    connections = _holding(network)
     if not connections or not free:
         return []
     moment = _moment(network, speed, np.zeros(len(network.bodies)), np.array([state.initial for state in network.states]))
@@ -218,7 +229,7 @@ def _static_guess(network: Network, free: list[int], speed: float) -> list[Float
     for element in network.elements:
         if isinstance(element, AppliedTorque) and element.coordinate in applied:
             applied[element.coordinate] += float(element.value(moment))
-    matrix = _factor_matrix(network, names)
+    matrix = _factor_matrix(connections, names)
     torques = np.linalg.lstsq(matrix.T, np.array(list(applied.values())), rcond=None)[0]
     twists = [_twist_of(connection, moment, float(torque)) for connection, torque in zip(connections, torques, strict=True)]
     if any(twist is None for twist in twists):
@@ -283,24 +294,17 @@ def _one_sided_stiffness(connection: Connection, moment: Moment) -> tuple[float,
 def _balanced_speed(network: Network) -> float:
     """Highest stable speed at which motor and load torques balance, else 0.
 
-    All bodies turn at their ideal ratio, so connections carry no power and the sum of ratio times
-    applied torque vanishes: g(w) = sum(ratio_i T_i(w)) = 0 with falling g.
+    All bodies turn at their ideal ratio, so that springs between them carry no power and the sum of ratio times
+    torque vanishes: g(w) = sum(ratio_i T_i(w)) = 0 with falling g.  States are at rest for each speed where they come
+    to rest (the torque behind a lag), else at their initial values (the integral of a controller).
     """
     zeros = np.zeros(len(network.bodies))
     states = np.array([state.initial for state in network.states])
-    connections = {id(c) for c in _connections(network)}
+    turning = {body.name: body.sense * body.ratio for body in network.bodies}
 
     def surplus(speed: float) -> float:
-        moment = _moment(network, speed, zeros, states)
-        total = 0.0
-        for element in network.elements:
-            if id(element) in connections:
-                continue
-            for name, value in element.contribution(moment).items():
-                body = next((body for body in network.bodies if body.name == name), None)
-                if body is not None:
-                    total += body.sense * body.ratio * float(value)
-        return total
+        total = network.torques(_moment(network, speed, zeros, _settled(network, speed, states)))
+        return sum(factor * float(total[name]) for name, factor in turning.items())
 
     speeds = np.concatenate([[0.0], np.geomspace(1e-2, 1e4, 400)])
     values = np.array([surplus(speed) for speed in speeds])
@@ -309,3 +313,18 @@ def _balanced_speed(network: Network) -> float:
         return 0.0
     last = int(falling[-1])
     return float(brentq(surplus, speeds[last], speeds[last + 1], xtol=1e-12, rtol=1e-14))
+
+
+def _settled(network: Network, speed: float, initial: FloatArray) -> FloatArray:
+    """States whose rates vanish at a speed with nothing twisted; the initial ones where there are none."""
+    if not len(initial):
+        return initial
+    zeros = np.zeros(len(network.bodies))
+
+    def rates(values: FloatArray) -> FloatArray:
+        total = network.torques(_moment(network, speed, np.zeros((len(zeros), *values.shape[1:])), values))
+        rows = [np.broadcast_to(np.asarray(total[state.name], float), values.shape[1:]) for state in network.states]
+        return np.array(rows).reshape(values.shape)
+
+    found, error = _newton(rates, initial, iterations=20)
+    return found if error < 1e-9 else initial

@@ -21,6 +21,8 @@ from typing import Any, BinaryIO, Self
 import numpy as np
 
 from hdrive_mbs.errors import FileFormatError, HdriveError
+from hdrive_mbs.export.formats import write_table
+from hdrive_mbs.export.table import table_of
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.scene_file import scene_from_dict, scene_to_dict
 from hdrive_mbs.writing import write_text, write_whole
@@ -81,6 +83,24 @@ class Result:
     def to_csv(self, path: str | os.PathLike[str]) -> Path:
         """Write the columns as CSV (comma, point, one header line with units)."""
         return write_csv(path, self.columns())
+
+    def export(self, path: str | os.PathLike[str]) -> Path:
+        """Write the columns for other programs: .csv, .parquet, .h5 (HDF5) or .mat (MATLAB), by the suffix.
+
+        Units, status, settings, versions and the scene go with them (into CSV the units alone).  Parquet and HDF5 need
+        ``hdrive-mbs[records]``.  Only ``save`` keeps everything and can be loaded again.
+        """
+        if Path(path).suffix.lower() == ".csv":
+            return self.to_csv(path)
+        scene, problem = _packed_scene(self.scene)
+        head = {
+            "result": type(self).__name__,
+            "status": self.status,
+            "settings": json.dumps(_pack(self.settings, "settings", {})),
+            "versions": json.dumps(dict(self.versions)),
+            "scene": json.dumps(scene) if scene is not None else problem,
+        }
+        return write_table(path, table_of(self.columns(), head))
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the whole result to one file (numpy archive with a JSON head and a checksum)."""
@@ -143,8 +163,7 @@ def load(path: str | os.PathLike[str]) -> Result:
         raise FileFormatError(f"{path} is not in the format {FORMAT!r} (found {found!r}).{newer}")
     if document.pop("sha256", None) != _checksum(document, arrays):
         raise FileFormatError(f"{path}: the checksum does not fit; the file was changed or damaged.")
-    kinds = {kind.__name__: kind for kind in _subclasses(Result)}
-    kind = kinds.get(document["result"])
+    kind = _kind(document["result"])
     if kind is None:
         raise FileFormatError(f"{path} holds a {document['result']!r}, which this version does not know.")
     values = {name: _unpack(value, arrays) for name, value in document["fields"].items()}
@@ -189,7 +208,17 @@ def _unpacked_scene(document: dict[str, Any] | None, path: str | os.PathLike[str
         return None
 
 
-def _subclasses(kind: type[Result]) -> list[type[Result]]:
+def _kind(name: str) -> type[Result] | None:
+    """The result type of that name, also one of a package above this one that ``hdrive_mbs`` offers."""
+    import hdrive_mbs
+
+    kinds = {kind.__name__: kind for kind in _subclasses(Result)}
+    offered = getattr(hdrive_mbs, name) if name not in kinds and name in hdrive_mbs.__all__ else None
+    return offered if isinstance(offered, type) and issubclass(offered, Result) else kinds.get(name)
+
+
+@functools.cache
+def _import_analyses() -> None:
     import importlib
     import pkgutil
 
@@ -197,6 +226,10 @@ def _subclasses(kind: type[Result]) -> list[type[Result]]:
 
     for module in pkgutil.walk_packages(analysis.__path__, "hdrive_mbs.analysis."):
         importlib.import_module(module.name)
+
+
+def _subclasses(kind: type[Result]) -> list[type[Result]]:
+    _import_analyses()
     found: list[type[Result]] = []
     stack = [kind]
     while stack:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from hdrive_mbs import __version__
-from hdrive_mbs.cli import bench, campbell, demo, effects, modes, run, run_up, teeth, torsion, unbalance
+from hdrive_mbs.cli import animate, bench, campbell, demo, effects, modes, run, run_up, sweep, teeth, torsion, unbalance
 from hdrive_mbs.errors import HdriveError
 
 app = typer.Typer(
@@ -39,6 +39,8 @@ app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options"
 app.command()(unbalance.unbalance)
 app.command()(campbell.campbell)
 app.command()(run_up.run_up)
+app.command()(animate.animate)
+app.command()(sweep.sweep)
 
 
 def main() -> None:

@@ -104,4 +104,5 @@ def _print(name: str, result: RunUp) -> None:
     heads = ["rotor", "peak of C, 0-peak [um]", "at [rad/s]", "at [s]", "peak of P, 0-peak [um]"]
     print_table(f"{name}: {result.status}", heads, rows)
     criticals = ", ".join(f"{speed:.5g}" for speed in result.critical_speeds) or "none met"
+    criticals = str(result.settings.get("critical_speeds", criticals))
     print(f"final speed {result.final_speed:.6g} rad/s; undamped critical speeds [rad/s]: {criticals}")

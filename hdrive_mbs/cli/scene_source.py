@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import Any
 
 from hdrive_mbs.effects.effect import Effect
-from hdrive_mbs.errors import FileFormatError, HdriveError, SceneError, unknown_place
+from hdrive_mbs.errors import FileFormatError, ParameterError, SceneError, unknown_place
 from hdrive_mbs.quantities import Quantity
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.scene_file import all_types, load_scene, parse_setting
@@ -114,8 +114,8 @@ def parse_effect(text: str) -> tuple[Effect, str]:
         values[key] = _plain(value) if quantity is None else _number(value, quantity, f"{name}.{key}")
     try:
         return kinds[name](**values), place
-    except TypeError as error:
-        raise HdriveError(f"{text!r}: {error}.") from None
+    except ParameterError as error:
+        raise ParameterError(f"{text!r}: {error}") from None
 
 
 def _number(value: str, quantity: Quantity, where: str) -> float:

@@ -13,6 +13,7 @@ from hdrive_mbs.components.component import Component, Flange
 from hdrive_mbs.components.housing import Housing
 from hdrive_mbs.errors import LawError, ParameterError
 from hdrive_mbs.expression import Value
+from hdrive_mbs.network.bearing_draft import BearingDraft, SupportDraft
 from hdrive_mbs.network.connection_draft import Torque
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
@@ -56,13 +57,29 @@ class Bearing(Component):
     def build(self, name: str, draft: Draft) -> None:
         station = draft.station(name)
         if self.housing is not None and has_forces(self.law):
-            add_bearing(name, draft, station, self.law, add_housing_across(name, draft, station, self.housing))
-            return
-        housing = add_housing(name, draft, self.housing)
-        stretches = {direction: station.stretch(direction) for direction in DIRECTIONS}
-        for direction, coordinate in zip("xy", housing):
-            stretches[direction] = {**stretches[direction], coordinate: -1.0}
-        add_bearing(name, draft, station, self.law, stretches)
+            stretches = add_housing_across(name, draft, station, self.housing)
+        else:
+            housing = add_housing(name, draft, self.housing)
+            stretches = {direction: station.stretch(direction) for direction in DIRECTIONS}
+            for direction, coordinate in zip("xy", housing):
+                stretches[direction] = {**stretches[direction], coordinate: -1.0}
+        bearing = add_bearing(name, draft, station, self.law, stretches)
+        draft.add_bearing(bearing, None if self.housing is None else _support(name, station, self.housing, stretches))
+
+
+def _support(name: str, station: Station, housing: Housing, stretches: Mapping[str, Mapping[str, float]]) -> SupportDraft:
+    """The housing as effects see it; its displacement is that of the ring less that across the bearing."""
+    displacement: dict[str, dict[str, float]] = {}
+    for key in "xy":
+        ring, across = station.stretch(key), stretches[key]
+        factors = {c: ring.get(c, 0.0) - across.get(c, 0.0) for c in (*ring, *across)}
+        displacement[key] = {c: factor for c, factor in factors.items() if factor != 0.0}
+
+    def spring(direction: str, x: Value) -> Value:
+        stiffness, power = getattr(housing, f"stiffness_{direction}"), getattr(housing, f"power_stiffness_{direction}")
+        return stiffness * x + (power * raised(x, int(housing.power)) if power != 0.0 else 0.0)
+
+    return SupportDraft(name, displacement, housing.mass, {"x": housing.damping_x, "y": housing.damping_y}, spring)
 
 
 def has_forces(law: BearingLaw) -> bool:
@@ -135,7 +152,7 @@ def raised(value: Value, exponent: int) -> Value:
     return result
 
 
-def add_bearing(name: str, draft: Draft, station: Station, law: BearingLaw, stretches: Mapping[str, Mapping[str, float]]) -> None:
+def add_bearing(name: str, draft: Draft, station: Station, law: BearingLaw, stretches: Mapping[str, Mapping[str, float]]) -> BearingDraft:
     """Matrices and forces of a law along its six stretches, and the channels of its force on the housing."""
     stiffness, damping = np.asarray(law.stiffness_matrix(), float), np.asarray(law.damping_matrix(), float)
     extra = tuple(dict.fromkeys(c for factors in stretches.values() for c in factors if c not in station.names))
@@ -146,34 +163,34 @@ def add_bearing(name: str, draft: Draft, station: Station, law: BearingLaw, stre
         raise LawError(f"{name!r}: the matrices of {type(law).__name__} have entries for phi; torque about the axis belongs into forces().")
     if stiffness.any() or damping.any():
         draft.add_coordinate_matrix(f"{name}.coefficients", names, stiffness=rows.T @ stiffness @ rows, damping=rows.T @ damping @ rows)
-
-    add_law(name, draft, law, stretches)
+    return add_law(name, draft, law, stretches)
 
 
 def add_law(
     name: str, draft: Draft, law: BearingLaw, stretches: Mapping[str, Mapping[str, float]], offset: Callable[[int], float] = lambda row: 0.0
-) -> None:
+) -> BearingDraft:
     """Forces of a law on top of its matrices, along its six stretches, and the channels of its whole force on the housing.
 
     offset : what the channels add to the stretch of each direction [m, rad]
     """
     stiffness, damping = np.asarray(law.stiffness_matrix(), float), np.asarray(law.damping_matrix(), float)
 
-    def forces(moment: Moment, s: Mapping[str, Value], v: Mapping[str, Value]) -> Mapping[str, Value]:
+    def forces(s: Mapping[str, Value], v: Mapping[str, Value]) -> Mapping[str, Value]:
         return law.forces(_relative(s, v))
 
+    bearing = BearingDraft(name, {key: stretches[key] for key in DIRECTIONS}, stiffness, damping, forces)
     if has_forces(law):
-        draft.add_coupling(f"{name}.force", {key: dict(factors) for key, factors in stretches.items()}, forces)
-    for row, direction in enumerate("xy"):
+        draft.add_coupling(f"{name}.force", {key: dict(factors) for key, factors in stretches.items()}, lambda m, s, v: forces(s, v))
+    for direction in "xy":
 
-        def read(moment: Moment, row: int = row, direction: str = direction) -> Value:
+        def read(moment: Moment, direction: str = direction) -> Value:
             along = enumerate(stretches.items())
             s = {key: sum((f * moment.angle(c) for c, f in factors.items()), offset(k)) for k, (key, factors) in along}
             v = {key: sum(f * moment.speed(c) for c, f in factors.items()) for key, factors in stretches.items()}
-            linear = sum(stiffness[row, k] * s[key] + damping[row, k] * v[key] for k, key in enumerate(DIRECTIONS))
-            return linear + forces(moment, s, v).get(direction, 0.0)
+            return bearing.whole(direction, s, v)
 
         draft.add_channel(f"{name}.force_{direction}", "N", f"force of {name} on its housing in {direction}", read)
+    return bearing
 
 
 def _relative(s: Mapping[str, Value], v: Mapping[str, Value]) -> RelativeMotion:

@@ -14,7 +14,11 @@ from hdrive_mbs.quantities import parameter
 
 @dataclass(frozen=True, kw_only=True)
 class Inertia(Component):
-    """A rigid rotating mass with viscous drag:  J dw/dt = sum of torques - viscous * w."""
+    """A rigid rotating mass with viscous drag:  J dw/dt = sum of torques - viscous * w.
+
+    It only turns.  Joined to a rotor it adds to the inertia of the spin and leaves out its mass, tilt and gyroscopic
+    moment, as do ``Motor`` and ``Load``; a disc that tilts with the shaft is a ``Rotor``.
+    """
 
     inertia: float = parameter("kg m^2", "moment of inertia about the axis", above=0.0)
     viscous: float = parameter("N m s/rad", "viscous drag on the absolute speed", default=0.0, low=0.0)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from hdrive_mbs.components.component import Component, Flange
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
+from hdrive_mbs.network.bearing_draft import ShaftPiece
 from hdrive_mbs.network.circulation import Circulation
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
@@ -104,6 +105,7 @@ class ShaftSection(Component):
         stiffness[:, SPINS] = 0.0
         damping = self.damping * stiffness + self.rotating_damping * bending
         draft.add_matrix(f"{name}.beam", (a, b), stiffness=stiffness, damping=damping, mass=mass)
+        draft.add_shaft(ShaftPiece(name, (a, b), beam.length, bending))
         if self.rotating_damping > 0.0:
             factor = self.rotating_damping
             draft.add_element(Circulation.between(f"{name}.rotating_damping", a, b, factor * beam.circulatory(), factor * bending))

@@ -22,6 +22,10 @@ VERDICTS: Mapping[str, str] = {
 """Verdict -> in words."""
 
 
+def _nothing() -> FloatArray:
+    return np.empty(0)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
     """An identified parameter.
@@ -129,6 +133,7 @@ class Trace:
     """One column of one record, thinned for pictures.
 
     times : s;  measured, nominal, refit, effect : in the column's unit, offsets taken out;  held_out : where no fit looked
+    speed, torque, angle : operating point at these times [rad/s, N m, rad], for pictures of the residual over it; empty if not known
     """
 
     record: str
@@ -141,6 +146,64 @@ class Trace:
     refit: FloatArray
     effect: FloatArray
     held_out: npt.NDArray[np.bool_]
+    speed: FloatArray = field(default_factory=_nothing)
+    torque: FloatArray = field(default_factory=_nothing)
+    angle: FloatArray = field(default_factory=_nothing)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LatentForce:
+    """What an unknown force at a place must have been, so that the refitted nominal model follows a record.
+
+    at : place;  unit : of the force: N m, N, or the unit of a kinematic or sensor error
+    times : s;  force : its smoothed estimate;  speed, angle : of the place [rad/s, rad];  twist : of a connection [rad];  torque :
+    through the place [N m];  each empty where there is none
+    record : name;  spread : standard deviation of the estimate; empty if not known
+    """
+
+    at: str
+    unit: str
+    times: FloatArray
+    force: FloatArray
+    speed: FloatArray
+    angle: FloatArray
+    twist: FloatArray
+    record: str = ""
+    torque: FloatArray = field(default_factory=_nothing)
+    spread: FloatArray = field(default_factory=_nothing)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Loop:
+    """Torque against twist of a connection during a record, thinned for pictures.
+
+    each of measured, refit, effect : shape (2, n): twist [rad] and torque [N m]; (2, 0) where there is none
+    measured : from the record, directly or by the latent force;  refit, effect : of the models
+    """
+
+    record: str
+    at: str
+    measured: FloatArray
+    refit: FloatArray
+    effect: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class OrderMap:
+    """Amplitudes, 0-peak, of a residual over speed and order of a shaft.
+
+    speeds : rad/s, shape (p,);  orders : periods per revolution of the reference, shape (m,)
+    before, after : refitted nominal model, and with the claimed cause, shape (p, m), in the column's unit
+    """
+
+    record: str
+    column: str
+    unit: str
+    reference: str
+    speeds: FloatArray
+    orders: FloatArray
+    before: FloatArray
+    after: FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -167,6 +230,7 @@ class Diagnosis:
     parameters : nominal parameters after the fit;  improved : the scene with the cause, ready to be saved and simulated
     next_records : for a group that cannot be told apart, records that would separate it, best first
     notes : what a reader has to know (fits that did not converge, verification on the engine, ...)
+    forces, loops, order_maps : for pictures: at the located place, most telling record first
     """
 
     scene: Scene
@@ -185,6 +249,15 @@ class Diagnosis:
     notes: tuple[str, ...] = ()
     seconds: float = 0.0
     versions: Mapping[str, str] = field(default_factory=dict)
+    forces: tuple[LatentForce, ...] = ()
+    loops: tuple[Loop, ...] = ()
+    order_maps: tuple[OrderMap, ...] = ()
+
+    def __str__(self) -> str:
+        """The report in plain text."""
+        from hdrive_mbs.diagnosis.report_text import report_text
+
+        return report_text(self)
 
     @property
     def gap(self) -> Gap:
@@ -193,8 +266,19 @@ class Diagnosis:
 
     @property
     def closed(self) -> float:
-        """Share of the gap's energy above the noise that the claim closes, held out: 1 - (e^2 - f^2)/(n^2 - f^2)."""
-        gap = self.gap
-        open_before = gap.nominal.value**2 - gap.floor**2
-        left = max(gap.effect.value, gap.floor) ** 2 - gap.floor**2
-        return 1.0 - left / open_before if open_before > 0.0 else 0.0
+        """Share of the gap's energy above the noise that the claim closes, held out: 1 - (e^2 - f^2)/(n^2 - f^2).
+
+        nan where the nominal model is not above the noise: then there is nothing to close.
+        """
+        return _closed(self.gap, self.gap.effect)
+
+    @property
+    def closed_by_refit(self) -> float:
+        """The same for refitted parameters alone."""
+        return _closed(self.gap, self.gap.refit)
+
+
+def _closed(gap: Gap, after: Misfit) -> float:
+    before = gap.nominal.value**2 - gap.floor**2
+    left = max(after.value**2 - gap.floor**2, 0.0)
+    return 1.0 - left / before if before > 0.0 else float("nan")

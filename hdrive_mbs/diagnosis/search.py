@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
+import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.evidence import log_evidence
@@ -13,19 +15,21 @@ from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import AnalysisError
 
+FloatArray = npt.NDArray[np.float64]
 Label = tuple[str, str]
 
 LOOSE = 10.0
 """Times its prior standard deviation that a suspected parameter may be off."""
-COARSE = 3e-3
-"""Relative change of the cost that ends a fit whose misfit is not explained anyway."""
+COARSE, FINE = 3e-3, 1e-4
+"""Relative change of the cost that ends the fit of the nominal model, whose misfit may have no explanation in it, and of others."""
 BRIEF, LAWS, STEPS = 10, 2, 3
 """Labels that are looked at closer, laws of each that get joint steps, and how many of these."""
-KEPT, CONVERGED = 6, 25
-"""Laws that are fitted to the end, and steps that this may take."""
+KEPT, SERIOUS, CONVERGED = 6, 3, 25
+"""Laws that are fitted on, how many of them to the end, and steps that this may take."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +116,7 @@ def fit_nominal(simulator: Simulator, factors: Sequence[Factor]) -> Fitted:
 
 
 def search(
+    team: Team,
     simulator: Simulator,
     base: Fitted,
     groups: Mapping[str, Sequence[str]],
@@ -128,48 +133,64 @@ def search(
     columns = jacobian(simulator, base.hypothesis, base.z, base.residuals)
     screen = Screen(simulator, base, columns)
     everything = suspects(base.hypothesis, groups, tried)
-    looks: list[tuple[Suspect, Look]] = []
     simple = _simplest(everything)
-    for k, suspect in enumerate(simple):
-        said("looking at candidates", k, len(simple))
-        look = screen.look(suspect.first)
-        if look is not None:
-            looks.append((suspect, look))
-    looks.sort(key=lambda pair: pair[1].cost)
-    costs = {f"{suspect.law} at {suspect.label[1]}": look.cost for suspect, look in looks}
+    looks = _looked(team, screen, simple, [item.first for item in simple], partial(said, "looking at candidates"))
     chosen = [suspect.label for suspect, _ in looks[:BRIEF]]
-    closer: list[tuple[Suspect, Look]] = []
     laws = [suspect for suspect in everything if suspect.label in chosen]
-    for k, suspect in enumerate(laws):
-        said("looking closer", k, len(laws))
-        look = screen.look(suspect.all)
-        if look is not None:
-            closer.append((suspect, look))
-    closer.sort(key=lambda pair: pair[1].cost)
-    brief = []
+    closer = _looked(team, screen, laws, [item.all for item in laws], partial(said, "looking closer"))
     picked = _picked(closer, laws=LAWS)
-    for k, (suspect, look) in enumerate(picked):
-        said("a few joint steps", k, len(picked))
-        brief.append(Found(suspect, fit(simulator, look.hypothesis, look.z, steps=STEPS, begin=look.residuals)))
+    tasks = [Task(look.hypothesis, look.z, look.residuals, STEPS, FINE) for _, look in picked]
+    fits = team.map(run_task, simulator, tasks, partial(said, "a few joint steps"))
+    brief = [Found(suspect, fitted) for (suspect, _), fitted in zip(picked, fits, strict=True)]
     brief.sort(key=lambda item: item.fitted.cost)
-    final = []
-    for k, item in enumerate(brief[:KEPT]):
-        said("fitting the best", k, KEPT)
-        final.append(scored(Found(item.suspect, further(simulator, item.fitted)), base))
+    kept = brief[:KEPT]
+    tasks = [further(item.fitted, CONVERGED if k < SERIOUS else STEPS) for k, item in enumerate(kept)]
+    fits = team.map(run_task, simulator, tasks, partial(said, "fitting the best"))
+    final = [scored(Found(item.suspect, fitted), base) for item, fitted in zip(kept, fits, strict=True)]
     final.sort(key=lambda item: -item.log_odds)
-    return Search(base=base, found=tuple(final), looks=costs)
+    return Search(base=base, found=tuple(final), looks={f"{suspect.law} at {suspect.label[1]}": look.cost for suspect, look in looks})
+
+
+def _looked(
+    team: Team, screen: Screen, asked: Sequence[Suspect], starts: Sequence[tuple[Hypothesis, ...]], said: Callable[[int, int], None]
+) -> list[tuple[Suspect, Look]]:
+    """Looks at suspects, cheapest misfit first; those that cannot be run are left out."""
+    answers = team.map(_look, screen, starts, said)
+    looks = [(suspect, look) for suspect, look in zip(asked, answers, strict=True) if look is not None]
+    return sorted(looks, key=lambda pair: pair[1].cost)
+
+
+def _look(screen: Screen, hypotheses: tuple[Hypothesis, ...]) -> Look | None:
+    return screen.look(hypotheses)
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """A fit to do: where it begins, and how far it may go.  ``done`` is set where there is nothing left to do."""
+
+    hypothesis: Hypothesis
+    z: FloatArray
+    residuals: FloatArray | None
+    steps: int
+    share: float
+    done: Fitted | None = None
+
+
+def run_task(simulator: Simulator, task: Task) -> Fitted:
+    """Do it."""
+    if task.done is not None:
+        return task.done
+    return fit(simulator, task.hypothesis, task.z, steps=task.steps, share=task.share, begin=task.residuals)
+
+
+def further(fitted: Fitted, steps: int = CONVERGED, share: float = FINE) -> Task:
+    """To fit on from where a fit stands."""
+    return Task(fitted.hypothesis, fitted.z, fitted.residuals, steps, share, fitted if fitted.converged else None)
 
 
 def scored(found: Found, base: Fitted) -> Found:
     """With its log odds against the model it adds to."""
     return Found(found.suspect, found.fitted, log_evidence(found.fitted) - log_evidence(base))
-
-
-def further(simulator: Simulator, fitted: Fitted, steps: int = CONVERGED, share: float = 1e-4) -> Fitted:
-    """Fitted on, from where it stands."""
-    if fitted.converged and share >= 1e-4:
-        return fitted
-    return fit(simulator, fitted.hypothesis, fitted.z, steps=steps, share=share, begin=fitted.residuals)
 
 
 def _simplest(everything: Sequence[Suspect]) -> list[Suspect]:

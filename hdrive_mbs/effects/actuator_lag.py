@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.effects.fast_sliding import FASTEST_RATE
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
@@ -23,11 +24,12 @@ class ActuatorLag(Effect):
     a drive reports), ``<effect>.torque`` is y.  A time constant of zero delivers M at once.
 
     Source: current loop as a first-order lag, as in any text on electrical drives, e.g. Leonhard, Control of
-    Electrical Drives.  Leaves out dead time and the limit of voltage; a lag much shorter than the step of a solver
-    with fixed steps makes it unstable.
+    Electrical Drives.  Leaves out dead time and the limit of voltage.  A lag shorter than 1/f, too fast for fixed steps,
+    is replaced by y with 1/f in place of t and tau = f t y + (1 - f t) M: slow commands come late by t all the same.
     """
 
-    time_constant: float = parameter("s", "t", low=0.0, high=10.0, typical=(5e-4, 0.05))
+    time_constant: float = parameter("s", "t", low=0.0, high=10.0, typical=(5e-5, 0.05))
+    fastest_rate: float = parameter("1/s", "f, rate up to which the lag is followed", default=FASTEST_RATE, above=0.0)
 
     acts_on: ClassVar[str] = "motor"
     kind: ClassVar[str] = "hidden state"
@@ -41,11 +43,15 @@ class ActuatorLag(Effect):
             if self.time_constant == 0.0:
                 return torque
 
+            share = min(1.0, self.time_constant * self.fastest_rate)
+
             def rate(moment: Moment) -> Value:
-                return (torque(moment) - moment.state(state)) / self.time_constant
+                return (torque(moment) - moment.state(state)) * (share / self.time_constant)
 
             state = draft.add_state(f"{name}.lagged", unit="N m", initial=0.0, rate=rate)
-            return lambda moment: moment.state(state)
+            if share == 1.0:
+                return lambda moment: moment.state(state)
+            return lambda moment: share * moment.state(state) + (1.0 - share) * torque(moment)
 
         delivered = draft.change_motor(place, change, kind)
         draft.add_channel(f"{name}.torque", "N m", f"torque that reaches the rotor of {place}", delivered)

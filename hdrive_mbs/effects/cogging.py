@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from hdrive_mbs.effects.effect import Effect, add_body_torque, moving_body
-from hdrive_mbs.effects.harmonics import harmonics, potential
+from hdrive_mbs.effects.harmonics import MOTOR_ORDERS, harmonics, potential
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
@@ -29,17 +30,23 @@ class Cogging(Effect):
     (TorqueRipple) and the loss in the iron.
     """
 
-    amplitude: float = parameter("N m", "A_1, amplitude of the first harmonic, 0-peak", low=0.0, high=1e3, typical=(1e-3, 5.0))
-    order: float = parameter("1", "n, periods of the first harmonic per turn", above=0.0, high=1e3, typical=(1.0, 120.0))
+    amplitude: float = parameter("N m", "A_1, amplitude of the first harmonic, 0-peak", low=0.0, high=1e3, typical=(1e-4, 5.0))
+    order: float = parameter("1", "n, periods of the first harmonic per turn", above=0.0, high=1e3)
     phase: float = parameter("rad", "p_1, phase at angle 0", default=0.0, typical=(-np.pi, np.pi))
-    second_amplitude: float = parameter("N m", "A_2 at order 2 n, 0-peak", default=0.0, low=0.0, high=1e3, typical=(1e-3, 5.0))
+    second_amplitude: float = parameter("N m", "A_2 at order 2 n, 0-peak", default=0.0, low=0.0, high=1e3, typical=(1e-4, 5.0))
     second_phase: float = parameter("rad", "p_2, phase at angle 0", default=0.0, typical=(-np.pi, np.pi))
-    third_amplitude: float = parameter("N m", "A_3 at order 3 n, 0-peak", default=0.0, low=0.0, high=1e3, typical=(1e-3, 5.0))
+    third_amplitude: float = parameter("N m", "A_3 at order 3 n, 0-peak", default=0.0, low=0.0, high=1e3, typical=(1e-4, 5.0))
     third_phase: float = parameter("rad", "p_3, phase at angle 0", default=0.0, typical=(-np.pi, np.pi))
 
     acts_on: ClassVar[str] = "motor"
     family: ClassVar[str] = "torque_ripple"
     signature: ClassVar[str] = "torque and speed vibration at fixed orders of the motor, the same at every load; detents at standstill"
+    vectors: ClassVar[tuple[tuple[str, str], ...]] = (
+        ("amplitude", "phase"),
+        ("second_amplitude", "second_phase"),
+        ("third_amplitude", "third_phase"),
+    )
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"order": MOTOR_ORDERS}
 
     @property
     def parts(self) -> tuple[tuple[float, float], ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -18,31 +19,39 @@ from hdrive_mbs.quantities import parameter
 class EccentricLoad(Effect):
     """Weight of a mass off the axis of a horizontal shaft (an arm, an unbalanced drum).
 
-    tau = -m g r sin(a + a_0)  in true sense,  from the potential  V = -m g r cos(a + a_0)
+    tau = -m g r sin(a + a_0) - B sin(2 a + q)  in true sense,  from  V = -m g r cos(a + a_0) - B/2 cos(2 a + q)
 
     where a is the true angle of the body.  Up is against gravity: at a + a_0 = 0 the mass hangs
     straight down, at pi/2 it is level, at pi it stands above the axis.  For a shaft inclined to
-    the horizontal by i put gravity = g cos(i).
+    the horizontal by i put gravity = g cos(i).  B is what a linkage or a counter spring adds twice a turn.
 
     Source: statics.  Leaves out the inertia of the mass: its m r^2 (plus its own) belongs to the
-    inertia of the part.  Also leaves out what the weight does to the bearings.
+    inertia of the part, so motion tells m r and a_0 but neither m nor r alone: a search holds r.  Also leaves out
+    what the weight does to the bearings.
     """
 
     mass: float = parameter("kg", "mass m", low=0.0, high=1e4, typical=(0.05, 50.0))
-    radius: float = parameter("m", "distance r of its centre from the axis", low=0.0, high=10.0, typical=(0.02, 0.5))
+    radius: float = parameter("m", "distance r of its centre from the axis", low=0.0, high=10.0)
     start_angle: float = parameter(
         "rad", "a_0, true angle from hanging straight down when the body's angle is 0", default=0.0, typical=(-np.pi, np.pi)
     )
+    second_torque: float = parameter("N m", "B, torque twice a turn, 0-peak", default=0.0, low=0.0, high=1e5, typical=(5e-3, 50.0))
+    second_phase: float = parameter("rad", "q, phase of B at angle 0", default=0.0, typical=(-np.pi, np.pi))
     gravity: float = parameter("m/s^2", "acceleration g of gravity across the shaft", default=9.80665, low=0.0, high=30.0)
 
     family: ClassVar[str] = "eccentric_load"
     signature: ClassVar[str] = "torque at once per turn of the body at every speed, and a rest position that the body swings back to"
+    vectors: ClassVar[tuple[tuple[str, str], ...]] = (("mass", "start_angle"), ("second_torque", "second_phase"))
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"radius": (0.1,)}
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         body = moving_body(self, draft, place)
 
         def torque(moment: Moment) -> Value:
             angle = body.sense * moment.angle(body.name)
-            return -body.sense * self.mass * self.gravity * self.radius * np.sin(angle + self.start_angle)
+            weight = self.mass * self.gravity * self.radius * np.sin(angle + self.start_angle)
+            if self.second_torque != 0.0:
+                weight = weight + self.second_torque * np.sin(2.0 * angle + self.second_phase)
+            return -body.sense * weight
 
         add_body_torque(self, draft, body.name, name, torque)

@@ -8,6 +8,7 @@ An effect of a user's own is a frozen dataclass that subclasses one of these and
 * MemoryTorqueEffect, MemoryTwistEffect: the first two with states, ``torque(..., state)`` and ``state_rate(name, ..., state)``
 * MotorEffect (motor_effect.py): a changed motor torque, ``delivered(time, speed, torque)``
 * SensorEffect, MemorySensorEffect (sensor_effect.py): a changed reading, ``reading(time, value)``
+* LateralEffect (lateral_effect.py): a force across the axis of a rotor line, ``force(time, angle, speed, x, y, x_rate, y_rate)``
 * Effect: anything else, ``apply(draft, place, name)``
 """
 
@@ -47,7 +48,8 @@ class Effect(Described, ABC):
 
     _kind: ClassVar[str] = "effect"
     acts_on: ClassVar[str] = "body"
-    """'body', 'connection', 'gear', 'motor' or 'sensor': the kind of place the effect needs."""
+    """The kind of place the effect needs, one of PLACES: 'body', 'connection', 'gear', 'motor', 'sensor'; on rotor lines
+    'rotor', 'station', 'bearing', 'support', 'shaft', 'drive end'; under sensors 'probe' and 'surface'."""
     kind: ClassVar[str] = "force"
     """One of KINDS."""
     family: ClassVar[str] = _OwnName()  # type: ignore[assignment]
@@ -56,6 +58,11 @@ class Effect(Described, ABC):
     """Whether the effect claims never to give back more than it stores (checked when a scene is assembled)."""
     signature: ClassVar[str] = ""
     """What an engineer would see in a record, in words."""
+    vectors: ClassVar[tuple[tuple[str, str], ...]] = ()
+    """Pairs of fields (amplitude, phase [rad]) in which a search turns amplitude cos and amplitude sin: linear, and no
+    phase where the amplitude is zero."""
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {}
+    """Field -> values from which a search begins, one after the other.  A field without a typical range stays there."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)

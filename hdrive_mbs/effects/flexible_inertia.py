@@ -17,7 +17,8 @@ from hdrive_mbs.quantities import parameter
 class FlexibleInertia(Effect):
     """A share of a body's own inertia, attached to the rest through a spring and a damper.
 
-    tau = k x + c (w_h - w),  dx/dt = w_h - w,  J_h dw_h/dt = -tau,  J_h = s J,  k = J_h f^2,  c = 2 z J_h f
+    tau = k x (1 + b x^2) + (c + e J_h |v|) v,  dx/dt = v = w_h - w,  J_h dw_h/dt = -tau,  J_h = s J,  k = J_h f^2,
+    c = 2 z J_h f
 
     with the inertia J of the place, of which (1 - s) J stays where it was: the whole keeps its inertia, as a load does
     whose arm or table bends.  f and z are natural frequency and damping ratio of the share with the rest held still;
@@ -29,6 +30,13 @@ class FlexibleInertia(Effect):
     share: float = parameter("1", "s, part of the inertia that sits on the spring", low=0.0, high=0.95, typical=(0.02, 0.7))
     natural_frequency: float = parameter("rad/s", "f, with the rest held still", above=0.0, high=1e5, typical=(20.0, 3e3))
     damping_ratio: float = parameter("1", "z, with the rest held still", default=0.02, low=0.0, high=2.0, typical=(2e-3, 0.3))
+
+    hardening: float = parameter(
+        "1/rad^2", "b, share by which the spring is stiffer per deflection squared", default=0.0, low=0.0, high=1e9, typical=(0.1, 1e5)
+    )
+    square_damping: float = parameter(
+        "1", "e, damping torque per inertia and rate squared", default=0.0, low=0.0, high=1e6, typical=(1e-2, 100.0)
+    )
 
     kind: ClassVar[str] = "hidden state"
     family: ClassVar[str] = "hidden_mode"
@@ -43,5 +51,5 @@ class FlexibleInertia(Effect):
     def apply(self, draft: Draft, place: str, name: str) -> None:
         inertia = self.share * moving_body(self, draft, place).inertia
         draft.add_inertia(place, -inertia, type(self).__name__)
-        fields = {"natural_frequency": self.natural_frequency, "damping_ratio": self.damping_ratio}
-        HiddenMode(inertia=inertia, **fields).apply(draft, place, name)
+        fields = ("natural_frequency", "damping_ratio", "hardening", "square_damping")
+        HiddenMode(inertia=inertia, **{field: getattr(self, field) for field in fields}).apply(draft, place, name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -17,7 +18,7 @@ from hdrive_mbs.quantities import parameter
 class HarmonicKinematicError(KinematicError):
     """Kinematic error with three harmonics of one order: n, 2 n and 3 n.
 
-    twist = phi_wg/u - phi_fs + e,  e = sum(A_k sin(k n a + p_k)),  k = 1, 2, 3
+    twist = phi_wg/u - phi_fs + e,  e = sum(A_k sin(k n a + p_k)) + c,  k = 1, 2, 3
 
     with signs, place and reaction as in KinematicError.  With n = 2 on the wave generator these are its orders
     2, 4 and 6, with n = 1 on the flexspline the orders 1, 2 and 3 of the output; use one effect for each.
@@ -32,7 +33,16 @@ class HarmonicKinematicError(KinematicError):
     third_phase: float = parameter("rad", "p_3, phase at angle 0", default=0.0, typical=(-np.pi, np.pi))
 
     signature: ClassVar[str] = "vibration and position error at several multiples of an order, resonant where each meets a mode"
+    vectors: ClassVar[tuple[tuple[str, str], ...]] = (
+        ("amplitude", "phase"),
+        ("second_amplitude", "second_phase"),
+        ("third_amplitude", "third_phase"),
+    )
+    starts: ClassVar[Mapping[str, tuple[float | str, ...]]] = {
+        "order": (1.0, 2.0, 4.0),
+        "follows": ("wave_generator", "flexspline"),
+    }
 
     def error(self, angle: Value) -> Value:
         parts = (self.amplitude, self.phase), (self.second_amplitude, self.second_phase), (self.third_amplitude, self.third_phase)
-        return harmonics(angle, self.order, parts)
+        return harmonics(angle, self.order, parts) + self.offset

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from hdrive_mbs.effects.effect import MemoryTwistEffect
+from hdrive_mbs.effects.fast_sliding import FASTEST_RATE
 from hdrive_mbs.effects.maxwell_slip_hysteresis import MaxwellSlipHysteresis
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
@@ -32,6 +33,7 @@ class IwanHysteresis(MemoryTwistEffect):
     torque_limit: float = parameter("N m", "T_h, torque at which everything slips", low=0.0, high=1e3, typical=(0.05, 50.0))
     slip_twist: float = parameter("rad", "x_s, twist on first loading at which everything slips", above=0.0, high=0.1, typical=(1e-5, 1e-2))
     rounding: float = parameter("1", "part of each limit over which its corner is rounded", default=0.1, low=0.0, high=1.0)
+    fastest_rate: float = parameter("1/s", "f, rate up to which the state is followed", default=FASTEST_RATE, above=0.0)
 
     family: ClassVar[str] = "hysteresis"
     dissipative: ClassVar[bool] = True
@@ -42,7 +44,9 @@ class IwanHysteresis(MemoryTwistEffect):
         """The law with its elements written out."""
         stiffness = 2.0 * self.torque_limit / (ELEMENTS * self.slip_twist)
         limits = tuple(stiffness * self.slip_twist * (k + 0.5) / ELEMENTS for k in range(ELEMENTS))
-        return MaxwellSlipHysteresis(stiffness=(stiffness,) * ELEMENTS, torque_limit=limits, rounding=self.rounding)
+        return MaxwellSlipHysteresis(
+            stiffness=(stiffness,) * ELEMENTS, torque_limit=limits, rounding=self.rounding, fastest_rate=self.fastest_rate
+        )
 
     def states(self) -> Mapping[str, str]:
         return self.elements.states()

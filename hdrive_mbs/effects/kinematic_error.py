@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -19,12 +20,13 @@ from hdrive_mbs.quantities import option, parameter
 class KinematicError(Effect):
     """One order of the kinematic error of a gear.
 
-    twist = phi_wg/u - phi_fs + e,  e = A sin(n a + p)
+    twist = phi_wg/u - phi_fs + e,  e = A sin(n a + p) + c
 
     where a is the true angle of the flange that the error follows, counted from the circular spline.
     Unloaded, the twist is zero and the output runs ahead of its ideal angle by e in its forward
     sense (in true sense: e times the sense of the output).  The torque of the gear acts back on the
-    followed flange by T de/da, so no energy is made.  At e(0) != 0 a run from rest starts wound up by e(0).
+    followed flange by T de/da, so no energy is made.  At e(0) != 0 a run from rest starts wound up by e(0);
+    c = -A sin(p) lets it start unwound, as where the encoders are set to zero after the gear has come to rest.
 
     Source: Ghorbel, Gandhi, Alpeter, ASME J. Mechanical Design 123 (2001) 90; Nye, Kraml, 25th Aerospace
     Mechanisms Symposium, NASA CP-3113 (1991).  Harmonic drives err mostly twice per turn of the wave
@@ -35,12 +37,18 @@ class KinematicError(Effect):
     amplitude: float = parameter("rad", "amplitude A at the output, 0-peak", low=0.0, high=0.01, typical=(1e-6, 1e-3))
     order: float = parameter("1", "periods n per turn of the flange it follows", default=2.0, above=0.0, high=1e3)
     phase: float = parameter("rad", "phase p at angle 0", default=0.0, typical=(-np.pi, np.pi))
+    offset: float = parameter("rad", "constant part c at the output", default=0.0, low=-0.01, high=0.01, typical=(-1e-3, 1e-3))
     follows: str = option("'wave_generator' or 'flexspline': the flange whose angle counts", default="wave_generator")
 
     acts_on: ClassVar[str] = "gear"
     kind: ClassVar[str] = "kinematic"
     family: ClassVar[str] = "kinematic_error"
     signature: ClassVar[str] = "vibration and position error at a fixed order of a shaft, resonant where the order meets a mode"
+    vectors: ClassVar[tuple[tuple[str, str], ...]] = (("amplitude", "phase"),)
+    starts: ClassVar[Mapping[str, tuple[float | str, ...]]] = {
+        "order": (1.0, 2.0, 4.0, 6.0),
+        "follows": ("wave_generator", "flexspline"),
+    }
 
     def check(self) -> None:
         if self.follows not in ("wave_generator", "flexspline"):
@@ -48,7 +56,7 @@ class KinematicError(Effect):
 
     def error(self, angle: Value) -> Value:
         """e [rad] at a true angle [rad] of the flange."""
-        return self.amplitude * np.sin(self.order * angle + self.phase)
+        return self.amplitude * np.sin(self.order * angle + self.phase) + self.offset
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         gear = draft.connection(place, type(self).__name__, flanges=(self.follows, "circular_spline"))

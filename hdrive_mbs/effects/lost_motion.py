@@ -28,7 +28,9 @@ class LostMotion(LawEffect):
     """
 
     width: float = parameter("rad", "full width b of the gap", low=0.0, high=0.2, typical=(1e-5, 0.01))
-    film: float = parameter("rad", "twist e over which the corners are rounded; 0 for sharp ones", default=0.0, low=0.0, high=0.1)
+    film: float = parameter(
+        "rad", "twist e over which the corners are rounded; 0 for sharp ones", default=0.0, low=0.0, high=0.1, typical=(1e-6, 1e-3)
+    )
 
     family: ClassVar[str] = "backlash"
     signature: ClassVar[str] = "no elastic torque over a range of twist; offset between both senses, a soft resonance at small torque"

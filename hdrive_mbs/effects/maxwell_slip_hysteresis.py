@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from hdrive_mbs.effects.effect import MemoryTwistEffect
+from hdrive_mbs.effects.fast_sliding import FASTEST_RATE, followed_share, mixed
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter, table
@@ -18,7 +19,7 @@ from hdrive_mbs.quantities import parameter, table
 class MaxwellSlipHysteresis(MemoryTwistEffect):
     """Springs in parallel, each behind a dry slider, beside the elastic torque of a connection.
 
-    tau = sum(T_i),  dT_i/dt = k_i v (1 - s_i),  s_i = clip((|T_i| - (1 - r) L_i) / (r L_i), 0, 1) where v T_i > 0, else 0
+    tau = sum(T_i),  dT_i/dt = k_i v (1 - s_i),  s_i = max((|T_i| - (1 - r) L_i) / (r L_i), 0) where v T_i > 0, else 0
 
     with the rate of twist v, stiffness k_i and limit L_i of each element.  r = 0 is the sharp law: an
     element follows the twist until |T_i| = L_i and then slips; loops then obey Masing's rules
@@ -27,18 +28,24 @@ class MaxwellSlipHysteresis(MemoryTwistEffect):
 
     Source: Iwan, J. Applied Mechanics 33 (1966) 893; Al-Bender, Lampaert, Swevers, IEEE Trans.
     Automatic Control 50 (2005) 1883.  Leaves out the dependence on speed and load.  Up to four
-    elements run without a Python callback.
+    elements run without a Python callback.  Sliding faster than at the rate f is as
+    in fast_sliding.py, with rounded corners that take 1/f or more; sharp ones are for solvers with error control.
     """
 
     stiffness: tuple[float, ...] = table("N m/rad", "stiffness k_i of each element", low=0.0, typical=(1e2, 1e5))
     torque_limit: tuple[float, ...] = table("N m", "torque L_i at which each element slips", low=0.0, high=1e3, typical=(0.05, 20.0))
     rounding: float = parameter("1", "r, part of the limit over which the corner is rounded", default=0.1, low=0.0, high=1.0)
+    fastest_rate: float = parameter("1/s", "f, rate up to which the state is followed", default=FASTEST_RATE, above=0.0)
 
     family: ClassVar[str] = "hysteresis"
     dissipative: ClassVar[bool] = True
     signature: ClassVar[str] = (
         "torque-twist loop that does not depend on speed, with closed inner loops; return paths are the virgin curve doubled"
     )
+    starts: ClassVar[Mapping[str, tuple[tuple[float, ...], ...]]] = {
+        "stiffness": ((1e4, 3e3, 1e3),),
+        "torque_limit": ((0.5, 0.5, 0.5),),
+    }
 
     def check(self) -> None:
         if len(self.stiffness) != len(self.torque_limit) or not self.stiffness:
@@ -57,18 +64,29 @@ class MaxwellSlipHysteresis(MemoryTwistEffect):
 
     def state_rate(self, name: str, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
         stiffness, limit = self._elements()[name]
-        return stiffness * rate * (1.0 - self._slip(state[name], limit, rate))
+        slip = self._slip(state[name], limit, rate)
+        share = self._share(name, rate)
+        if self.rounding > 0.0:
+            share = np.where(slip > 0.0, self._share(name, rate / self.rounding), share)
+        return share * stiffness * rate * (1.0 - slip)
+
+    def _share(self, name: str, rate: Value) -> Value:
+        stiffness, limit = self._elements()[name]
+        return followed_share(np.abs(rate) * (stiffness / limit), self.fastest_rate)
 
     def _slip(self, torque: Value, limit: float, rate: Value) -> Value:
         size = np.abs(torque)
         if self.rounding == 0.0:
             slip = np.where(size >= limit, 1.0, 0.0)
         else:
-            slip = np.clip((size - (1.0 - self.rounding) * limit) / (self.rounding * limit), 0.0, 1.0)
+            slip = np.maximum((size - (1.0 - self.rounding) * limit) / (self.rounding * limit), 0.0)
         return np.where(rate * torque > 0.0, slip, 0.0)
 
     def torque(self, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
-        return sum(state[name] for name in self._elements())
+        return sum(
+            mixed(self._share(name, rate), np.clip(state[name], -limit, limit), limit, rate)
+            for name, (_, limit) in self._elements().items()
+        )
 
     def stored(self, state: Mapping[str, Value]) -> Value:
         return sum(state[name] * state[name] / (2.0 * stiffness) for name, (stiffness, _) in self._elements().items())

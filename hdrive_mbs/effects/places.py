@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 
 from hdrive_mbs.network.elements import AppliedTorque, Connection
 from hdrive_mbs.network.network import Network
@@ -38,14 +38,70 @@ def sensors(network: Network) -> tuple[str, ...]:
 
 def angle_sensors(network: Network) -> tuple[str, ...]:
     """Sensors that read the angle of a place, directly or through another sensor."""
+    return tuple(name for name in sensors(network) if root_quantity(name, network).endswith(".angle"))
+
+
+# -- on rotor lines ------------------------------------------------------------------------------------
+
+
+def rotors(network: Network) -> tuple[str, ...]:
+    """Rigid rotors with six coordinates."""
+    return tuple(rotor.name for rotor in network.rotors)
+
+
+def stations(network: Network) -> tuple[str, ...]:
+    """Places with lateral motion, each body once."""
+    lateral = {body.name for body in network.bodies if body.lateral}
+    return tuple(dict.fromkeys(node for node in network.places.values() if f"{node}.x" in lateral))
+
+
+def bearings(network: Network) -> tuple[str, ...]:
+    """Bearings whose ring is a station, with or without a housing that moves."""
+    return network.members.get("bearing", ())
+
+
+def supports(network: Network) -> tuple[str, ...]:
+    """Bearings with a housing that moves, by the name of the bearing."""
+    return network.members.get("support", ())
+
+
+def shafts(network: Network) -> tuple[str, ...]:
+    """Pieces of shaft that bend."""
+    return network.members.get("shaft", ())
+
+
+def drive_ends(network: Network) -> tuple[str, ...]:
+    """Where a line is held or coupled to something outside: bearings, and motors that sit elsewhere; each body once."""
+    lateral = set(stations(network))
+    driven = tuple(place for place in motors(network) if network.places[place] in lateral)
+    found: dict[str, str] = {}
+    for place in (*bearings(network), *driven):
+        found.setdefault(network.places[place], place)
+    return tuple(found.values())
+
+
+def probes(network: Network) -> tuple[str, ...]:
+    """Sensors that read a displacement of a place in x or y, directly or through another sensor."""
+    return tuple(name for name in sensors(network) if is_displacement(root_quantity(name, network), network.places))
+
+
+def surfaces(network: Network) -> tuple[str, ...]:
+    """Places where sensors read a displacement in x or y."""
+    return tuple(dict.fromkeys(root_quantity(name, network).rpartition(".")[0] for name in probes(network)))
+
+
+def is_displacement(quantity: str, places: Collection[str]) -> bool:
+    """Whether a channel is the displacement of a place in x or y."""
+    place, _, direction = quantity.rpartition(".")
+    return direction in ("x", "y") and place in places
+
+
+def root_quantity(name: str, network: Network) -> str:
+    """The quantity that a sensor reads, through other sensors."""
     source = {channel.name: channel.reads for channel in network.channels if channel.reads is not None}
-
-    def root(name: str) -> str:
-        while name in source:
-            name = source[name]
-        return name
-
-    return tuple(name for name in source if root(name).endswith(".angle"))
+    while name in source:
+        name = source[name]
+    return name
 
 
 PLACES: Mapping[str, Callable[[Network], tuple[str, ...]]] = {
@@ -54,5 +110,13 @@ PLACES: Mapping[str, Callable[[Network], tuple[str, ...]]] = {
     "gear": gears,
     "motor": motors,
     "sensor": sensors,
+    "rotor": rotors,
+    "station": stations,
+    "bearing": bearings,
+    "support": supports,
+    "shaft": shafts,
+    "drive end": drive_ends,
+    "probe": probes,
+    "surface": surfaces,
 }
 """Kind of place -> its places in a network."""

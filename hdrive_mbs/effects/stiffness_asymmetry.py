@@ -29,7 +29,7 @@ class StiffnessAsymmetry(LawEffect):
     """
 
     asymmetry: float = parameter("1", "a, share by which driving is stiffer", low=-0.8, high=0.8, typical=(-0.5, 0.5))
-    smoothing_twist: float = parameter("rad", "twist x_0 of the smooth step through zero", default=1e-5, above=0.0)
+    smoothing_twist: float = parameter("rad", "twist x_0 of the smooth step through zero", default=1e-5, above=0.0, typical=(1e-6, 1e-3))
 
     family: ClassVar[str] = "stiffness_asymmetry"
     signature: ClassVar[str] = (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -44,6 +45,11 @@ class StiffnessVariation(Effect):
     signature: ClassVar[str] = (
         "vibration at a fixed order of a shaft that grows with the torque, with sidebands and instability near twice a mode"
     )
+    vectors: ClassVar[tuple[tuple[str, str], ...]] = (("variation", "phase"),)
+    starts: ClassVar[Mapping[str, tuple[float | str, ...]]] = {
+        "order": (1.0, 2.0, 4.0),
+        "follows": ("wave_generator", "flexspline"),
+    }
 
     def check(self) -> None:
         if self.follows not in ("wave_generator", "flexspline"):

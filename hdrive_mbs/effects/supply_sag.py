@@ -18,7 +18,7 @@ class SupplySag(MotorEffect):
 
     tau = clip(M, -L, L),  L = max(T_L - s |w|, 0) where M w > 0 (driving), else T_L
 
-    with the torque M of the motor's characteristic.  s = 0 is a plain limit.  A supply with inner resistance has
+    with the torque M of the motor's characteristic.  s = 0 leaves M as it is.  A supply with inner resistance has
     less voltage left the more power is drawn, and the back voltage of the motor takes its share in proportion to
     the speed, so the current that can still be driven falls with the speed, in the first order along a line.
 
@@ -33,6 +33,8 @@ class SupplySag(MotorEffect):
     signature: ClassVar[str] = "torque stays below its command at high speed and torque only; run-ups that fall behind near full speed"
 
     def delivered(self, time: Value, speed: Value, torque: Value) -> Value:
+        if self.sag == 0.0:
+            return torque
         driving = np.maximum(self.torque_limit - self.sag * np.abs(speed), 0.0)
         limit = np.where(torque * speed > 0.0, driving, self.torque_limit)
         return np.clip(torque, -limit, limit)

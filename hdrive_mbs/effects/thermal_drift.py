@@ -32,7 +32,7 @@ class ThermalDrift(TorqueEffect):
     friction_change: float = parameter(
         "N m", "T, change of dry friction in the end", default=0.0, low=-1e3, high=1e3, typical=(-20.0, 20.0)
     )
-    time_constant: float = parameter("s", "h, time in which it warms up", above=0.0, typical=(0.5, 1e3))
+    time_constant: float = parameter("s", "h, time in which it warms up", above=0.0, typical=(0.3, 300.0))
     smoothing_speed: float = parameter("rad/s", "speed w_0 of the smooth step through zero", default=0.01, above=0.0)
 
     kind: ClassVar[str] = "parametric"

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from hdrive_mbs.effects.effect import Effect, add_body_torque, moving_body
+from hdrive_mbs.effects.harmonics import MOTOR_ORDERS
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
@@ -16,9 +18,9 @@ from hdrive_mbs.quantities import parameter
 
 @dataclass(frozen=True, kw_only=True)
 class TorqueRipple(Effect):
-    """One order of the ripple and cogging torque of a motor.
+    """One order of the ripple and cogging torque of a motor, with its double.
 
-    tau = (A + c T_m) sin(n a + p)
+    tau = (A + c T_m) sin(n a + p) + B sin(2 n a + q)
 
     with the true angle a of the body and the motor's air-gap torque T_m; positive tau drives
     forward.  The part A is there without current (cogging: n is the least common multiple of slots
@@ -28,14 +30,19 @@ class TorqueRipple(Effect):
     the change of amplitude with speed, and the phase between several orders (add one effect each).
     """
 
-    amplitude: float = parameter("N m", "A, amplitude without load, 0-peak", default=0.0, low=0.0, high=1e3, typical=(1e-3, 5.0))
-    relative: float = parameter("1", "c, amplitude (0-peak) per motor torque", default=0.0, low=0.0, high=1.0, typical=(1e-3, 0.3))
-    order: float = parameter("1", "n, periods per turn", above=0.0, high=1e3, typical=(1.0, 48.0))
+    amplitude: float = parameter("N m", "A, amplitude without load, 0-peak", default=0.0, low=0.0, high=1e3, typical=(1e-4, 5.0))
+    relative: float = parameter("1", "c, amplitude (0-peak) per motor torque", default=0.0, low=0.0, high=1.0, typical=(1e-4, 0.3))
+    order: float = parameter("1", "n, periods per turn", above=0.0, high=1e3)
     phase: float = parameter("rad", "p, phase at angle 0", default=0.0, typical=(-np.pi, np.pi))
+
+    second_amplitude: float = parameter("N m", "B at order 2 n, 0-peak", default=0.0, low=0.0, high=1e3, typical=(1e-4, 5.0))
+    second_phase: float = parameter("rad", "q, phase at angle 0", default=0.0, typical=(-np.pi, np.pi))
 
     acts_on: ClassVar[str] = "motor"
     family: ClassVar[str] = "torque_ripple"
     signature: ClassVar[str] = "torque and speed vibration at a fixed order of the motor, in proportion to its torque for the relative part"
+    vectors: ClassVar[tuple[tuple[str, str], ...]] = (("amplitude", "phase"), ("second_amplitude", "second_phase"))
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"order": MOTOR_ORDERS}
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         body = moving_body(self, draft, place)
@@ -43,6 +50,10 @@ class TorqueRipple(Effect):
 
         def torque(moment: Moment) -> Value:
             size = self.amplitude if motor is None else self.amplitude + self.relative * motor(moment)
-            return size * np.sin(self.order * (body.sense * moment.angle(body.name)) + self.phase)
+            angle = body.sense * moment.angle(body.name)
+            first = size * np.sin(self.order * angle + self.phase)
+            if self.second_amplitude == 0.0:
+                return first
+            return first + self.second_amplitude * np.sin(2.0 * self.order * angle + self.second_phase)
 
         add_body_torque(self, draft, body.name, name, torque)

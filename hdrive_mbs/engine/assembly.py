@@ -18,7 +18,7 @@ import numpy as np
 from exudyn import itemInterface as item  # noqa: N813
 
 from hdrive_mbs.engine.guard import check_connector, check_coupling, check_scalar
-from hdrive_mbs.engine.matrix import compact
+from hdrive_mbs.engine.matrix import compact, compact_alike
 from hdrive_mbs.engine.nodes import Nodes
 from hdrive_mbs.engine.records import CoupledRecord, ScalarRecord, make_records, oriented
 from hdrive_mbs.engine.symbolic import LARGEST_LAW, SYMBOLIC_VECTOR_LIMIT, connector_function, generic_function, written_out
@@ -61,8 +61,8 @@ class Assembly:
     """First coordinate of a node of several coordinates -> all of them."""
     signs: dict[str, int]
     """Sense of each coordinate in the engine against the forward one."""
-    copies: tuple[str, ...]
-    """Coordinates of rotors of which the engine keeps a copy (see Nodes.copied), after the states; "" for a joint."""
+    copies: tuple[Mapping[str, float], ...]
+    """What the copies follow (see Nodes.copied), after the states, as factors of coordinates in the engine's sense; none for a joint."""
     lowered: list[Lowered] = field(default_factory=list)
     kept: list[Any] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
@@ -73,8 +73,8 @@ class Assembly:
         q = [self.signs[name] * angles.get(name, 0.0) for name in self.bodies] + [0.0] * len(self.states)
         v = [self.signs[name] * speeds.get(name, 0.0) for name in self.bodies]
         v += [states.get(state.name, state.initial) for state in self.network.states]
-        q += [self.signs.get(name, 1) * angles.get(name, 0.0) for name in self.copies]
-        v += [self.signs.get(name, 1) * speeds.get(name, 0.0) for name in self.copies]
+        for own, given in ((q, angles), (v, speeds)):
+            own += [sum(f * self.signs.get(name, 1) * given.get(name, 0.0) for name, f in copy.items()) for copy in self.copies]
         self.mbs.systemData.SetODE2Coordinates(q, exu.ConfigurationType.Initial)
         self.mbs.systemData.SetODE2Coordinates_t(v, exu.ConfigurationType.Initial)
 
@@ -92,7 +92,10 @@ def assemble(network: Network, *, lowering: str = "symbolic", guard: bool = True
     if lowering not in ("symbolic", "python"):
         raise ParameterError(f"lowering = {lowering!r}: must be 'symbolic' or 'python'.")
     records = [
-        record for element in network.elements if not isinstance(element, MatrixElement) for record in make_records(element, network)
+        record
+        for element in network.elements
+        if not isinstance(element, MatrixElement)
+        for record in make_records(element, network, follow=lowering == "symbolic")
     ]
     matrices = _together(network.matrices)
     builder = _Builder(network, [record for record in records if isinstance(record, CoupledRecord)], matrices, lowering, guard)
@@ -132,12 +135,13 @@ class _Builder:
             matrix, body = self.nodes.carried.get(name, ("", None))
             if body is not None and matrix == element.name:
                 mass[names.index(name), names.index(name)] += body.inertia
+        elastic, viscous = compact_alike(stiffness, damping)
         self.mbs.AddObject(
             item.ObjectGenericODE2(
                 nodeNumbers=self.nodes.unique(names),
                 massMatrix=compact(mass),
-                stiffnessMatrix=compact(stiffness),
-                dampingMatrix=compact(damping),
+                stiffnessMatrix=elastic,
+                dampingMatrix=viscous,
                 forceVector=[0.0] * len(names),
             )
         )

@@ -44,10 +44,11 @@ def linearise(assembly: Assembly, *, angles: Mapping[str, float], speeds: Mappin
     mass, stiffness, damping = (np.asarray(item, float) for item in assembly.mbs.ComputeLinearizedSystem(settings)[:3])
     n, m = len(assembly.bodies), len(assembly.states)
     signs = np.array([assembly.signs[name] for name in assembly.bodies] + [1] * m, float)
-    for k, name in enumerate(assembly.copies, start=n + m):  # what depends or acts on a copy depends or acts on the coordinate
-        for matrix in (stiffness, damping) if name else ():
-            matrix[:, assembly.bodies.index(name)] += matrix[:, k]
-            matrix[assembly.bodies.index(name), :] += matrix[k, :]
+    for k, copy in enumerate(assembly.copies, start=n + m):  # what depends or acts on a copy depends or acts on what it follows
+        at, factors = [assembly.bodies.index(name) for name in copy], np.array(list(copy.values()))
+        for matrix in (stiffness, damping) if copy else ():
+            matrix[:, at] += np.outer(matrix[:, k], factors)
+            matrix[at, :] += np.outer(factors, matrix[k, :])
     mass, stiffness, damping = (np.outer(signs, signs) * item[: n + m, : n + m] for item in (mass, stiffness, damping))
     body, state = slice(0, n), slice(n, n + m)
     inverse = np.linalg.inv(mass[body, body])

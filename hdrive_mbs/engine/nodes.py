@@ -8,7 +8,7 @@ outside, like every other angle.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,7 +26,7 @@ class Nodes:
 
     signs : sense of each coordinate in the engine against the forward one
     groups : coordinate -> all that share its node
-    copies : coordinates of rotors that have a copy, in the order of the copies; "" for a joint
+    copies : what each copy follows, as factors of coordinates in the engine's sense, in the order of the copies; none for a joint
     carried : bodies whose mass the first matrix that touches them carries: coordinate -> (matrix, body)
     """
 
@@ -38,7 +38,7 @@ class Nodes:
         self.owner = {name: rotor for rotor in network.rotors for name in rotor.coordinates}
         self.groups = _groups(network.bodies, laws)
         self.signs |= {rotor.coordinates[-1]: rotor.sense for rotor in network.rotors}
-        self.copies: list[str] = []
+        self.copies: list[dict[str, float]] = []
         self.carried = self._masses_in_matrices()
         self._make()
 
@@ -107,8 +107,10 @@ class Nodes:
     def copied(self, record: CoupledRecord) -> CoupledRecord:
         """The record over copies of a rotor's coordinates, where with the rotor's node itself it would be too wide.
 
-        A symbolic coupling takes six coordinates, and a rotor's node has six already.
+        A symbolic coupling takes six coordinates, and a rotor's node has six already.  Stretches of its own are made here.
         """
+        for name, factors in record.stretches.items():
+            self._follow(name, factors)
         if record.outputs is None:
             return record
         touched = set(record.targets).union(record.depends)
@@ -124,7 +126,7 @@ class Nodes:
         """
         copy = f"{name} copy~"
         if copy not in self.at:
-            self.copies.append(name)
+            self.copies.append({name: 1.0})
             self._add_node(copy, 0.0)
             place, inertia = self._in_rotor(name)
             mass = np.zeros((7, 7))
@@ -140,7 +142,7 @@ class Nodes:
         """
         twin = f"{name} twin~"
         if twin not in self.at:
-            self.copies += [name, ""]
+            self.copies += [{name: 1.0}, {}]
             self._add_node(twin, 0.0)
             self._add_node(f"{name} joint~", 0.0)
             place, inertia = self._in_rotor(name)
@@ -149,6 +151,27 @@ class Nodes:
             mass[0, 1], mass[2 + place, 1] = inertia, -inertia
             self._add_mass([twin, f"{name} joint~", name], mass)
         return twin
+
+    def _follow(self, name: str, factors: Mapping[str, float]) -> None:
+        """A coordinate c = sum(f_i q_i) that hands on f_i F to q_i from every force F on c: ``_twin`` of a sum.
+
+        J (c'' - sum(f_i q_i'')) = 0,  J p'' = F,  (M q'')_i - f_i J p'' = Q_i;  J is the inertia felt along c.
+        """
+        sensed = {c: self.signs.get(c, 1) * factor for c, factor in factors.items()}
+        self.copies += [sensed, {}]
+        joint = f"{name} joint~"
+        self._add_node(name, 0.0)
+        self._add_node(joint, 0.0)
+        inertias = {body.name: body.inertia for body in self.network.bodies}
+        light = sum(factor**2 / inertias[c] for c, factor in sensed.items() if inertias[c] > 0.0)
+        inertia = 1.0 / light if light > 0.0 else 1.0
+        names = [name, joint, *self.whole(tuple(sensed))]
+        row = np.zeros(len(names))
+        row[0] = inertia
+        row[[names.index(c) for c in sensed]] = [-inertia * factor for factor in sensed.values()]
+        mass = np.zeros((len(names), len(names)))
+        mass[1], mass[:, 1] = row, row
+        self._add_mass(names, mass)
 
     def _in_rotor(self, name: str) -> tuple[int, float]:
         """Which coordinate of its rotor it is, and the inertia there."""
@@ -160,7 +183,7 @@ class Nodes:
         zero = np.zeros_like(mass)
         self.mbs.AddObject(
             item.ObjectGenericODE2(
-                nodeNumbers=[self.at[name] for name in names],
+                nodeNumbers=self.unique(names),
                 massMatrix=compact(mass),
                 stiffnessMatrix=compact(zero),
                 dampingMatrix=compact(zero),

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from hdrive_mbs.engine.symbolic import SYMBOLIC_VECTOR_LIMIT
 from hdrive_mbs.errors import HdriveError, LawError
 from hdrive_mbs.expression import Expression, TraceError, Value, derivative, evaluate, record, trace, variable, variables
 from hdrive_mbs.network.coupling import Coupling
@@ -51,6 +52,7 @@ class CoupledRecord:
 
     outputs : target -> expression over ``t``, ``angle:*``, ``speed:*``, ``state:*``; None if not recorded
     depends : coordinates and states that the law looks at
+    stretches : coordinates of the engine's own that follow a sum of others: name -> factors
     """
 
     name: str
@@ -59,6 +61,7 @@ class CoupledRecord:
     depends: tuple[str, ...]
     plain: Callable[[Moment], dict[str, Value]]
     reason: str = ""
+    stretches: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 
 def renamed(coupled: CoupledRecord, names: Mapping[str, str]) -> CoupledRecord:
@@ -77,7 +80,7 @@ def renamed(coupled: CoupledRecord, names: Mapping[str, str]) -> CoupledRecord:
 
     outputs = {names.get(name, name): substituted(item) for name, item in coupled.outputs.items()}
     targets, depends = (tuple(names.get(name, name) for name in item) for item in (coupled.targets, coupled.depends))
-    return CoupledRecord(coupled.name, targets, outputs, depends, plain, coupled.reason)
+    return CoupledRecord(coupled.name, targets, outputs, depends, plain, coupled.reason, coupled.stretches)
 
 
 class _Looked(Mapping[str, float]):
@@ -116,15 +119,39 @@ def _looked_at(name: str, function: Callable[[Moment], Iterable[Value]]) -> tupl
     return tuple(seen)
 
 
-def make_records(element: Element, network: Network) -> list[ScalarRecord | CoupledRecord]:
+def make_records(element: Element, network: Network, *, follow: bool = True) -> list[ScalarRecord | CoupledRecord]:
     """The simplest records of an element: scalar if its law allows, else coupled.
 
     A coupling is taken apart: each force that depends on its own stretch alone becomes a scalar record.
+    follow : whether stretches of a law over too many coordinates may become coordinates (see CoupledRecord.stretches)
     """
     if isinstance(element, Coupling):
-        return [record for part in _taken_apart(element) for record in make_records(part, network)]
+        return [record for part in _taken_apart(element) for record in make_records(part, network, follow=follow)]
     scalar = _scalar(element, network)
-    return [scalar if scalar is not None else _coupled(element, network)]
+    if scalar is not None:
+        return [scalar]
+    coupled = _coupled(element, network)
+    return [_narrowed(element, coupled, network) if follow and isinstance(element, _Rest) else coupled]
+
+
+def _is_wide(coupled: CoupledRecord) -> bool:
+    """Whether it touches more coordinates than a symbolic law can."""
+    return len({*coupled.targets, *coupled.depends}) > SYMBOLIC_VECTOR_LIMIT
+
+
+def _narrowed(part: _Rest, wide: CoupledRecord, network: Network) -> CoupledRecord:
+    """The record over the stretches themselves where the law is too wide over their coordinates."""
+    if wide.outputs is None or not _is_wide(wide):
+        return wide
+    given = {motion.name for motion in network.motions}
+    stretches = part.coupling.stretches
+    own = {key: f"{part.name}.{key}~" for key, factors in stretches.items() if len(factors) > 1 and not given & set(factors)}
+    over = {key: {own[key]: 1.0} if key in own else factors for key, factors in stretches.items()}
+    narrow = _coupled(_Rest(replace(part.coupling, stretches=over), part.directions), network, own.values())
+    if narrow.outputs is None or _is_wide(narrow):
+        return wide
+    touched = {*narrow.targets, *narrow.depends}
+    return replace(narrow, stretches={name: stretches[key] for key, name in own.items() if name in touched})
 
 
 def _taken_apart(coupling: Coupling) -> list[Element]:
@@ -198,7 +225,7 @@ def oriented(coupled: CoupledRecord, signs: Mapping[str, int]) -> CoupledRecord:
     outputs = None
     if coupled.outputs is not None:
         outputs = {name: record(value) for name, value in sensed({k: substituted(e) for k, e in coupled.outputs.items()}).items()}
-    return CoupledRecord(coupled.name, coupled.targets, outputs, coupled.depends, plain, coupled.reason)
+    return CoupledRecord(coupled.name, coupled.targets, outputs, coupled.depends, plain, coupled.reason, coupled.stretches)
 
 
 def _scalar_form(element: Element) -> tuple[dict[str, float], Callable[[Moment, Value, Value], Value]] | None:
@@ -282,9 +309,9 @@ def _traced(element: Element, symbols: Moment) -> dict[str, Value]:
     return result
 
 
-def _coupled(element: Element, network: Network) -> CoupledRecord:
+def _coupled(element: Element, network: Network, own: Iterable[str] = ()) -> CoupledRecord:
     prescribed = {motion.name: motion for motion in network.motions}
-    kept = {body.name for body in network.bodies} | {state.name for state in network.states}
+    kept = {body.name for body in network.bodies} | {state.name for state in network.states} | set(own)
     rest = _zeros(network)  # the law may name what it multiplies by zero
 
     def plain(moment: Moment) -> dict[str, Value]:

@@ -20,7 +20,9 @@ class IdealSpeedMotor(MotorCharacteristic):
 
     angle(t) is the exact integral of the profile's speed, or a plain function of time.  The
     channel ``<name>.torque`` is the torque that the motion takes:  J d2(angle)/dt2 - sum of the
-    other torques on the rotor.  Leaves out that every motor has a limit: look at this torque.
+    other torques on the rotor.  Leaves out that every motor has a limit: look at this torque.  On an
+    unbalanced rotor it lacks m (e_x y'' - e_y x''), what the whirl of its centre of mass takes (its mean is the
+    power that bearings and shaft dissipate over the speed), which the channel's description says then.
     A motion that does not start from rest at t = 0 needs a train that starts with it.
     """
 
@@ -38,4 +40,5 @@ class IdealSpeedMotor(MotorCharacteristic):
     def drive(self, name: str, node: Node, draft: Draft) -> None:
         assert isinstance(self.motion, SpeedProfile)
         draft.prescribe(node.name, self.motion.angle)
-        draft.add_channel(f"{name}.torque", "N m", f"torque that {name} needs to keep its motion", draft.holding_torque(node))
+        lacks = ", without what the whirl of its unbalance takes" if node.mass.static_unbalance or node.mass.product_unbalance else ""
+        draft.add_channel(f"{name}.torque", "N m", f"torque that {name} needs to keep its motion{lacks}", draft.holding_torque(node))

@@ -109,6 +109,8 @@ class Network:
     positions: Mapping[str, float] = field(default_factory=dict)
     """Axial position of each place on the shaft [m], from the lengths of the sections."""
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    members: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Kind (bearing, support, shaft) -> names of what of that kind effects may change."""
 
     def moment(self, time: Value, angles: Mapping[str, Value], speeds: Mapping[str, Value], states: Mapping[str, Value]) -> Moment:
         """A moment in which the prescribed motions are filled in."""

@@ -75,10 +75,12 @@ class StationBodies:
 
 
 def station_bodies(
-    node: str, mass: RigidMass, sense: int, ratio: float, *, is_rotor: bool, motion: Callable[[Value], Value] | None
+    node: str, mass: RigidMass, sense: int, ratio: float, *, turning: float, is_rotor: bool, motion: Callable[[Value], Value] | None
 ) -> StationBodies:
     """Bodies and elements of a station that moves.
 
+    turning : inertia of parts that only turn with it (a Motor, an Inertia, a Load) [kg m^2]: on the spin alone, so that it
+        does not tilt and has no gyroscopic moment
     is_rotor : a rigid body with all its couplings; else small tilts with gyroscopic moments (seed M (8))
     motion : the prescribed forward spin angle; then unbalance enters as a force, a function of time
     """
@@ -91,9 +93,9 @@ def station_bodies(
     ]
     elements: list[Element] = []
     if motion is None:
-        bodies.append(Body(node, mass.polar, sense, ratio))
+        bodies.append(Body(node, mass.polar + turning, sense, ratio))
         if is_rotor:
-            return StationBodies(tuple(bodies), (), Rotor(node, names, mass, sense))
+            return StationBodies(tuple(bodies), tuple(_turning_along(node, turning)), Rotor(node, names, mass, sense))
     elif is_rotor:
         elements += _forced_unbalance(node, mass, sense, motion)
     if mass.polar > 0.0:
@@ -101,6 +103,13 @@ def station_bodies(
     if mass.centre[2] != 0.0:
         elements.append(_lever(node, mass))
     return StationBodies(tuple(bodies), tuple(elements), None)
+
+
+def _turning_along(node: str, inertia: float) -> Iterator[MatrixElement]:
+    """Inertia on the spin of a rotor alone, J phi'': what its rigid body leaves out."""
+    if inertia > 0.0:
+        zero = np.zeros((1, 1))
+        yield MatrixElement(f"{node}.turning", (node,), np.array([[inertia]]), zero, zero)
 
 
 def _lever(node: str, mass: RigidMass) -> MatrixElement:

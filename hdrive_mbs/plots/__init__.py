@@ -1,4 +1,4 @@
-"""Pictures of results: ``plot(result)`` and ``save_figure``.  The only importer of matplotlib."""
+"""Pictures of results: ``plot(result)``, ``animate(result, path)`` and ``save_figure``.  The only importer of matplotlib."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ from hdrive_mbs.plots import (
     order_tracking,
     reduction,
     response,
+    response_animation,
     run_up,
     spectrum,
+    teeth_animation,
     teeth_clearance,
     teeth_design,
     teeth_positions,
@@ -24,10 +26,10 @@ from hdrive_mbs.plots import (
     whirl_campbell,
     whirl_modes,
 )
+from hdrive_mbs.plots.animation import animate
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import house_look
 from hdrive_mbs.plots.saving import save_figure
-from hdrive_mbs.plots.teeth_animation import animate
 
 __all__ = [
     "animate",
@@ -42,9 +44,11 @@ __all__ = [
     "plot",
     "reduction",
     "response",
+    "response_animation",
     "run_up",
     "save_figure",
     "spectrum",
+    "teeth_animation",
     "teeth_clearance",
     "teeth_design",
     "teeth_positions",

@@ -1,4 +1,4 @@
-"""Picture of tracked orders: amplitude and phase over speed (Bode plot of a run-up)."""
+"""Picture of tracked orders: amplitude and lag over speed (Bode plot of a run-up)."""
 
 from __future__ import annotations
 
@@ -15,20 +15,19 @@ from hdrive_mbs.plots.lengths import shown_unit
 from hdrive_mbs.plots.look import house_look, legend_above, new_figure, number, readable, style
 
 FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 VISIBLE = 0.05
 """Smallest largest amplitude of a track that is drawn by itself, as a share of the largest of all."""
 
 FAINT = 1e-3
-"""Amplitude below which a phase is not drawn, as a share of the largest of its track; none of a track that is not visible."""
+"""Amplitude below which a lag is not drawn, as a share of the largest of its track; none of a track that is not visible."""
 
 
 @plot.register
 def plot_order_tracking(
     result: OrderTracking, ax: Axes | None = None, *, tracks: Sequence[str] | None = None, logarithmic: bool = False
 ) -> Axes:
-    """Amplitude, 0-peak, over speed, and below it the phase against the angle of the reference; returns the top one.
+    """Amplitude, 0-peak, over speed, and below it the lag behind the angle of the reference; returns the top one.
 
     tracks : which ("1 forward"); those of 5 % of the largest and more if not given
     logarithmic : amplitudes on a logarithmic scale
@@ -52,10 +51,10 @@ def plot_order_tracking(
                 continue
             amplitude = result.amplitudes[:, result.tracks.index(name)]
             clear = np.abs(amplitude) > FAINT * float(np.max(np.abs(amplitude)))
-            lower.plot(*_broken(np.abs(result.speeds), np.where(clear, _degrees(amplitude), np.nan)), **style(k))
-        lower.set_ylim(-270.0, 90.0)
-        lower.set_yticks(np.arange(-270.0, 91.0, 90.0))
-        lower.set_ylabel("phase against the spin [deg]")
+            lower.plot(*_broken(np.abs(result.speeds), np.where(clear, np.degrees(_lag(result, name)), np.nan)), **style(k))
+        lower.set_ylim(-45.0, 315.0)
+        lower.set_yticks(np.arange(0.0, 316.0, 90.0))
+        lower.set_ylabel("lag behind the spin [degrees]")
         lower.set_xlabel(f"speed of {readable(result.reference)} [rad/s]")
         figure.align_ylabels([upper, lower])
         title = f"{readable(result.channel)}: orders of {readable(result.reference)}, windows of {number(result.revolutions)} revolutions"
@@ -72,13 +71,13 @@ def _visible(result: OrderTracking) -> list[str]:
     return [name for name, size in zip(result.tracks, largest, strict=True) if size >= VISIBLE * float(largest.max())]
 
 
-def _degrees(amplitude: ComplexArray) -> FloatArray:
-    """Phase from -270 up to 90 degrees: the cut lies where neither 0 (below) nor -180 (above a critical speed) is near."""
-    return np.asarray(np.mod(np.degrees(np.angle(amplitude)) + 270.0, 360.0) - 270.0)
+def _lag(result: OrderTracking, name: str) -> FloatArray:
+    order, _, sense = name.partition(" ")
+    return result.lag(float(order), sense or "forward")
 
 
 def _broken(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The line with a gap where the phase jumps across the cut."""
+    """The line with a gap where the lag jumps across the cut."""
     jumps = np.nonzero(np.abs(np.diff(y)) > 180.0)[0] + 1
     return np.insert(x, jumps, x[jumps]), np.insert(y, jumps, np.nan)
 

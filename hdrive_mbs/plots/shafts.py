@@ -26,7 +26,7 @@ def shaft_numbers(scene: Scene | None, places: Sequence[str]) -> list[int]:
     for name in scene.parts:
         a, b = f"{name}.a", f"{name}.b"
         if a in at and b in at and at[a] != at[b]:
-            inside = [place for place in places if place.rpartition(".")[0] == name and not place.endswith(".housing")]
+            inside = [place for place in places if name in (place, place.rpartition(".")[0]) and not place.endswith(".housing")]
             for place in (b, *inside):
                 first[end(network.places.get(place, place))] = end(network.places[a])
     ends = [end(network.places.get(place, place)) for place in places]

@@ -16,6 +16,9 @@ from hdrive_mbs.plots.look import COLOURS, given_or_new, house_look, readable
 
 FloatArray = npt.NDArray[np.float64]
 
+TURN = 2.0 * np.pi
+"""rad/s of one Hz."""
+
 
 @plot.register
 def plot_spectrum(
@@ -29,12 +32,12 @@ def plot_spectrum(
     The mean (line at 0 Hz) is written in the title, not drawn.
     """
     factor, unit = _unit(result)
-    found = [(peak.frequency, factor * peak.amplitude) for peak in result.peaks(peaks)]
+    found = [(peak.frequency / TURN, factor * peak.amplitude) for peak in result.peaks(peaks)]
     with house_look():
         ax = given_or_new(ax, 7.2, 3.6)
-        _draw(ax, result.frequency, factor * result.amplitude, found, highest, logarithmic, "Hz")
+        _draw(ax, result.hertz, factor * result.amplitude, found, highest, logarithmic, "Hz")
         ax.set_xlabel("frequency [Hz]")
-        span = f"{result.start:.4g} to {result.end:.4g} s, {result.resolution:.3g} Hz per line"
+        span = f"{result.start:.4g} to {result.end:.4g} s, {result.resolution / TURN:.3g} Hz per line"
         _labels(ax, result, unit, f"{_window(result.window)} window, {span}")
     return ax
 

@@ -1,52 +1,62 @@
-"""Animation of the meshing as a GIF; needs no display."""
+"""Animation of the meshing of a wave gear; needs no display."""
 
 from __future__ import annotations
 
 import os
+import threading
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.patches import Polygon
 
+from hdrive_mbs.plots.animation import animate
 from hdrive_mbs.plots.look import COLOURS, GREY, house_look, new_figure
+from hdrive_mbs.plots.recording import check_request, record
 from hdrive_mbs.teeth.gear import WaveGear
 from hdrive_mbs.teeth.motion import tooth_motion
 from hdrive_mbs.teeth.section import flexible_teeth, rigid_teeth
 from hdrive_mbs.teeth.stage import Stage
-from hdrive_mbs.writing import write_whole
 
 SIDE = 3
 
 
-def animate(gear: WaveGear, path: str | os.PathLike[str], *, frames: int = 40, seconds: float = 4.0, dpi: int = 90) -> Path:
-    """Write a GIF of all stages over one wave, seen from the rigid wheel; it repeats without a jump.
+@animate.register
+def animate_meshing(
+    result: WaveGear,
+    path: str | os.PathLike[str],
+    *,
+    frames: int = 40,
+    seconds: float = 4.0,
+    dpi: float = 90,
+    progress: bool | None = None,
+    cancel: threading.Event | None = None,
+) -> Path:
+    """Write all stages over one wave, seen from the rigid wheel; it repeats without a jump.
 
     In one wave every flexible tooth moves on by one pitch.  The marked tooth draws the path of its tip.
     """
-    stages = gear.stages()
-    pictures = []
-    with house_look():
-        figure = new_figure(5.2 * len(stages), 2.8)
-        figure.set_dpi(dpi)
-        canvas = FigureCanvasAgg(figure)
-        panels = [_Panel(ax, stage) for ax, stage in zip(np.atleast_1d(figure.subplots(1, len(stages))), stages)]
-        for k in range(frames):
-            for panel in panels:
-                panel.show(k / frames)
-            canvas.draw()  # type: ignore[no-untyped-call]
-            figure.set_layout_engine("none")  # after the first frame the axes keep their place
-            pictures.append(np.asarray(canvas.buffer_rgba())[..., :3].copy())  # type: ignore[no-untyped-call]
-    return write_whole(path, lambda file: _write_gif(file, pictures, seconds / frames))
+    check_request(path, frames, seconds, dpi)
+    return record(MeshingPicture(result, frames), path, seconds=seconds, dpi=dpi, progress=progress, cancel=cancel)
 
 
-def _write_gif(file: Any, pictures: list[Any], step: float) -> None:
-    from PIL import Image
+class MeshingPicture:
+    """All stages of a gear over one wave."""
 
-    images = [Image.fromarray(picture).quantize(48, dither=Image.Dither.NONE) for picture in pictures]
-    images[0].save(file, format="GIF", save_all=True, append_images=images[1:], duration=round(1e3 * step), loop=0, optimize=True)
+    def __init__(self, gear: WaveGear, count: int) -> None:
+        stages = gear.stages()
+        self.count = count
+        self.moving: tuple[Artist, ...] = ()
+        self.description = f"Meshing teeth over one wave of the generator: {', '.join(stage.name for stage in stages)}."
+        with house_look():
+            self.figure = new_figure(5.2 * len(stages), 2.8)
+            self._panels = [_Panel(ax, stage) for ax, stage in zip(np.atleast_1d(self.figure.subplots(1, len(stages))), stages)]
+
+    def show(self, number: int) -> None:
+        for panel in self._panels:
+            panel.show(number / self.count)
 
 
 class _Panel:

@@ -327,12 +327,12 @@ def test_a_sagging_supply_lets_the_motor_creep_up_to_its_last_speed() -> None:
 
 def test_effects_of_a_motor_follow_one_another() -> None:
     scene = wheel(0.2, 4.0).with_effect(hm.MotorScale(error=0.5), at="wheel", name="first")
-    scene = scene.with_effect(hm.SupplySag(sag=0.0, torque_limit=5.0), at="wheel", name="second")
+    scene = scene.with_effect(hm.SupplySag(sag=1e-12, torque_limit=5.0), at="wheel", name="second")
     response = hm.simulate(scene, 0.1, solver=TIGHT)
     assert (response["first.torque"].values[0], response["second.torque"].values[0]) == (6.0, 5.0)
     np.testing.assert_allclose(response["wheel.speed"].values, 25.0 * response.times, atol=1e-9)
     other = (
-        wheel(0.2, 4.0).with_effect(hm.SupplySag(sag=0.0, torque_limit=5.0), at="wheel").with_effect(hm.MotorScale(error=0.5), at="wheel")
+        wheel(0.2, 4.0).with_effect(hm.SupplySag(sag=1e-12, torque_limit=5.0), at="wheel").with_effect(hm.MotorScale(error=0.5), at="wheel")
     )
     assert hm.simulate(other, 0.1, solver=TIGHT)["wheel.speed"].values[-1] == pytest.approx(3.0)
 

@@ -370,7 +370,7 @@ def bouc_wen_path(law: BoucWenHysteresis, turning_points: list[float], speed: fl
 @pytest.mark.parametrize("speed", [1e-3, 10.0])
 def test_bouc_wen_loop_has_the_area_of_the_hand_integral_at_every_speed(speed: float) -> None:
     limit, width, top = 6.0, 2e-4, 0.9
-    law = BoucWenHysteresis(torque_limit=limit, yield_twist=width, exponent=1.0, shape=0.5)
+    law = BoucWenHysteresis(torque_limit=limit, yield_twist=width, exponent=1.0, shape=0.5, fastest_rate=1e9)
     # n = 1, b = 1/2, rising twist:  dx = x_y dz for z < 0  and  dx = x_y dz/(1 - z) for z > 0, so the loop between
     # -z_m and z_m spans 2 a = x_y (z_m - ln(1 - z_m)) and  area = 2 T_h x_y (-z_m - ln(1 - z_m) - z_m^2/2)
     half = 0.5 * width * (top - math.log(1.0 - top))
@@ -383,7 +383,7 @@ def test_bouc_wen_loop_has_the_area_of_the_hand_integral_at_every_speed(speed: f
 
 
 def test_bouc_wen_starts_with_its_stiffness_and_ends_at_its_limit() -> None:
-    law = BoucWenHysteresis(torque_limit=6.0, yield_twist=2e-4, exponent=3.0, shape=0.8)
+    law = BoucWenHysteresis(torque_limit=6.0, yield_twist=2e-4, exponent=3.0, shape=0.8, fastest_rate=1e9)
     twist, torque = bouc_wen_path(law, [4e-3], 1.0)
     # dT/dx = T_h/x_y at z = 0; 20 yield twists saturate to exp(-60)
     assert torque[1] / twist[1] == pytest.approx(6.0 / 2e-4, rel=1e-5)

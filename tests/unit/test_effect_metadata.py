@@ -127,7 +127,8 @@ def test_an_effect_of_a_users_own_can_name_its_places() -> None:
             draft.body(place)
 
     assert LoadOnly.places(drive_bench.build().network()) == ("load",)
-    assert set(PLACES) == {"body", "connection", "gear", "motor", "sensor"}
+    turning = {"body", "connection", "gear", "motor", "sensor"}
+    assert set(PLACES) == turning | {"rotor", "station", "bearing", "support", "shaft", "drive end", "probe", "surface"}
 
 
 def test_a_motor_is_told_from_a_load_that_has_a_torque_law_too() -> None:

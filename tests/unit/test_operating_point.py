@@ -14,6 +14,8 @@ from hdrive_mbs.errors import AnalysisError, HdriveError, ParameterError, PlaceE
 from hdrive_mbs.motors.ideal_speed import IdealSpeedMotor
 from hdrive_mbs.motors.profiles.constant import ConstantSpeed
 from hdrive_mbs.motors.servo import ServoMotor
+from models.harmonic_drive_train import build as drive_train
+from models.harmonic_drive_train import motor
 from tests.verification.scenes import LOST_MOTION, catalogue, train
 
 U = 50.0
@@ -204,3 +206,28 @@ def test_a_law_with_a_narrow_steep_ramp_is_balanced(torque: float) -> None:
 
     point = hm.operating_point(train().replacing({"gear.stiffness": steep}), torque=torque, motor_speed=100.0)
     assert point.torques["gear"] == pytest.approx(torque, rel=1e-8)
+
+
+def test_a_lag_of_the_motor_does_not_change_where_it_balances_the_load() -> None:
+    # its state starts at zero torque, at which the motor seems to give nothing at any speed
+    plain = hm.operating_point(drive_train())
+    lagging = hm.operating_point(drive_train().with_effect(hm.ActuatorLag(time_constant=0.01), at="motor"))
+    assert lagging.motor_speed == pytest.approx(plain.motor_speed, rel=1e-9)
+    assert lagging.torques == pytest.approx(dict(plain.torques), rel=1e-9)
+    # the torque that it delivers is the load over the ratio
+    assert lagging.states["actuator_lag.lagged"] == pytest.approx(20.0 / 100.0, rel=1e-9)
+
+
+def test_friction_in_the_mesh_is_carried_by_the_motor_and_does_not_hold_the_train() -> None:
+    plain = hm.operating_point(drive_train())
+    friction = hm.MeshFriction(loss_factor=0.2, no_load=0.05)
+    point = hm.operating_point(drive_train().with_effect(friction, at="gear.mesh"))
+    # M = T/u (1 + mu) + T_0, with tanh(156/0.5) = 1
+    assert point.torques["input_shaft"] == pytest.approx(20.0 / 100.0 * 1.2 + 0.05, rel=1e-9)
+    assert point.torques["gear"] == pytest.approx(20.0, rel=1e-9)
+    # the asynchronous motor gives that torque at a speed a little lower
+    assert motor().torque(0.0, point.motor_speed) == pytest.approx(0.29, rel=1e-9)
+    assert point.motor_speed < plain.motor_speed
+    # asked at a speed, the motor's balance does not count
+    asked = hm.operating_point(drive_train().with_effect(friction, at="gear.mesh"), motor_speed=100.0)
+    assert asked.torques["input_shaft"] == pytest.approx(0.29, rel=1e-9)

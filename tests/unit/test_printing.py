@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 import hdrive_mbs as hm
 from hdrive_mbs.cli.main import app
 from models.harmonic_drive_train import build
+from models.two_rotor_line import build as rotor_line
 
 
 def results() -> list[hm.Result]:
@@ -79,6 +80,7 @@ SCENE = """
 import hdrive_mbs as hm
 from own_drag import OwnDrag
 from models.harmonic_drive_train import build
+from models.two_rotor_line import build as rotor_line
 """
 DRAG = '''
 from dataclasses import dataclass
@@ -120,3 +122,29 @@ def test_a_scene_file_with_an_unknown_class_says_how_to_make_it_known(tmp_path: 
 def test_a_number_in_place_of_teeth_is_refused() -> None:
     with pytest.raises(hm.ParameterError, match=r"HarmonicDrive\.teeth = 3\.0: must be a gear geometry"):
         build().replacing({"gear.teeth": 3.0})
+
+
+def test_a_printed_rotor_line_is_a_table_for_each_kind_of_part_with_all_that_is_not_a_default() -> None:
+    line = rotor_line()
+    text = str(line)
+    rows = text.splitlines()
+    assert len(text) < 3000
+    assert all(len(row) < 125 for row in rows)
+    # what all sections have in common stands once, what differs in a column
+    assert sum("diameter 0.022 m" in row for row in rows) == 1
+    head = next(k for k, row in enumerate(rows) if row.split() == ["length", "[m]"])
+    assert [row.split() for row in rows[head + 1 : head + 5]] == [
+        [f"section_{k}", length] for k, length in zip("1234", ("0.06", "0.25", "0.25", "0.07"))
+    ]
+    assert "bore" not in text, "a default"
+    # every number that is no default can be read from it
+    for item in line.parameters().values():
+        name, _, path = item.path.partition(".")
+        owner, field = line.parts[name], path
+        while "." in field:
+            inner, _, field = field.partition(".")
+            owner = getattr(owner, inner)
+        default = type(owner).__dataclass_fields__[field].default
+        if item.value != default:
+            assert path in text, item.path
+            assert f"{item.value:.6g}" in text, item.path

@@ -331,10 +331,21 @@ def test_values_are_given_by_name_and_unknown_names_are_refused() -> None:
         hm.Inertia(1.0)  # type: ignore[misc]
     with pytest.raises(KeywordError, match=r"No field 'mass'\. Inertia has: inertia, viscous"):
         hm.Inertia(inertia=1.0, mass=2.0)  # type: ignore[call-arg]
-    with pytest.raises(TypeError, match="inertia"):
+    with pytest.raises(
+        ParameterError, match=r"^Inertia lacks what has no default: inertia \[kg m\^2\] : moment of inertia about the axis, above 0\.$"
+    ):
         hm.Inertia()  # type: ignore[call-arg]
+    with pytest.raises(ParameterError, match=r"Rotor lacks .*: polar_inertia \[kg m\^2\] .*; transverse_inertia \[kg m\^2\]"):
+        hm.Rotor(mass=2.0)  # type: ignore[call-arg]
+    with pytest.raises(ParameterError, match=r"Load lacks .*: torque : load law, or a function"):
+        hm.Load(inertia=1.0)  # type: ignore[call-arg]
     with pytest.raises(PlaceError, match=r"No field 'mass'\. Inertia has: inertia, viscous"):
         hm.Inertia(inertia=1.0).replacing(mass=2.0)
+
+
+def test_parts_are_copied_and_pickled_whole() -> None:
+    part = hm.Motor(inertia=1e-3, characteristic=hm.IdealSpeedMotor(motion=hm.ConstantSpeed(value=3.0)))
+    assert pickle.loads(pickle.dumps(part)) == copy.deepcopy(part) == copy.copy(part) == part
 
 
 def test_a_class_of_a_user_s_own_may_have_its_own_initialiser() -> None:

@@ -138,12 +138,57 @@ EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.FlexibleInertia(share=0.2, natural_frequency=100.0), "load"),
     (hm.SeriesCompliance(compliance=1e-5), "output_shaft"),
     (hm.ThermalDrift(viscous_change=-0.1, time_constant=10.0), "load"),
+    (hm.PreslidingFriction(coulomb=1.0, presliding=1e-3, drop=0.3), "load"),
+    (hm.MeshPreslidingFriction(loss_factor=0.1, stiffness=30.0), "gear"),
+    (hm.PowerDrag(drag=0.2, exponent=1.75), "load"),
+    (hm.DahlHysteresis(torque_limit=2.0, yield_twist=1e-4), "gear"),
+    (hm.SpreadSlipHysteresis(torque_limit=2.0, slip_twist=1e-3), "gear"),
+    (hm.OneSidedStiffness(change=-0.2, side="forward"), "gear"),
+    (hm.RippleSpectrum(order=6.0, third_amplitude=0.01), "motor"),
+    (hm.SecondOrderLag(delay=2e-3), "motor"),
     (hm.SensorGain(error=0.1), "encoder"),
     (hm.SensorOffset(offset=-0.1), "encoder"),
     (hm.SensorLag(time_constant=1e-3), "encoder"),
     (hm.SensorDelay(delay=1e-3), "encoder"),
     (hm.EncoderEccentricity(amplitude=1e-4, phase=0.3), "encoder"),
     (hm.SensorQuantisation(resolution=1e-3), "encoder"),
+    (hm.SensorDrift(offset=1e-3, time_constant=2.0), "encoder"),
+)
+
+ROTOR_EFFECTS: tuple[tuple[Effect, str], ...] = (
+    (hm.RotorUnbalance(unbalance=1e-5, phase=0.4, lever=0.01), "rotor"),
+    (hm.DynamicUnbalance(couple=1e-6, phase=0.4), "rotor"),
+    (hm.ShaftBow(amplitude=1e-5, phase=0.2), "rotor"),
+    (hm.ShaftKink(angle=1e-4, phase=0.2, share=0.3), "shaft.element_2"),
+    (hm.Misalignment(once=1.0, twice=2.0, twice_phase=0.3, roundness=0.5, lever=0.02), "bearing"),
+    (hm.OilWhirl(amplitude=3.0, ratio=0.46, onset=300.0), "bearing"),
+    (hm.BallPass(amplitude=3.0, order=3.57, sharpness=0.3), "bearing"),
+    (hm.BallPassHarmonics(amplitude=3.0, order=3.57, second_amplitude=1.0), "bearing"),
+    (hm.InnerRacePass(amplitude=3.0, order=5.43, load_direction=-1.0), "bearing"),
+    (hm.ExternalShock(amplitude=100.0, start=0.1), "bearing"),
+    (hm.GroundVibration(amplitude=10.0, frequency=200.0), "bearing"),
+    (hm.ProbeRunout(once=1e-6, once_phase=0.3, twice=1e-7), "rotor"),
+    (hm.ProbeGain(error=0.1, curvature=10.0), "probe"),
+    (hm.ProbeCrossTalk(share=0.05), "probe"),
+    (hm.BearingClearance(gap=1e-5, film_damping=0.3), "bearing"),
+    (hm.HertzianClearance(gap=1e-5, reference_force=100.0), "bearing"),
+    (hm.BearingCubicStiffness(stiffness=1e14, by_axis=True), "bearing"),
+    (hm.BearingHardening(rate=1e4), "bearing"),
+    (hm.BearingCrossCoupling(stiffness=1e5, exponent=1.0), "bearing"),
+    (hm.BearingAnisotropy(asymmetry=0.1, angle=0.3), "bearing"),
+    (hm.BearingStiffnessChange(change=0.1), "bearing"),
+    (hm.BearingDampingChange(change=0.1), "bearing"),
+    (hm.Looseness(share=0.3, lift_off=-1e-6, play=1e-5), "bearing"),
+    (hm.LooseFit(share=0.3, half_play=1e-6), "bearing"),
+    (hm.SupportStiffnessChange(change=0.1), "bearing"),
+    (hm.SupportDampingChange(change=0.1, direction="y"), "bearing"),
+    (hm.SupportMassChange(change=0.1), "bearing"),
+    (hm.HiddenModeSupport(mass=0.1, natural_frequency=300.0), "bearing"),
+    (hm.BreathingCrack(compliance=1e-7, position=0.5), "shaft.element_2"),
+    (hm.MomentCrack(compliance=1e-7, position=0.5, closing_moment=10.0), "shaft.element_2"),
+    (hm.InternalDamping(time=1e-6), "shaft.element_1"),
+    (hm.ShaftStiffnessAsymmetry(asymmetry=0.01, angle=0.3), "shaft.element_1"),
+    (hm.Rub(gap=1e-4, stiffness=1e6, friction=0.1, radius=0.05), "rotor"),
 )
 
 
@@ -176,6 +221,7 @@ def rotor_scene(law: hm.BearingLaw) -> hm.Scene:
         "piece": hm.RigidSection(length=0.05),
         "end": hm.Bearing(law=LINEAR),
         "gravity": hm.Gravity(y=-9.81),
+        "probe": hm.Sensor(quantity="rotor.x"),
     }
     return hm.Scene(name="rotor line", parts=parts, connections=[("drive", "bearing", "shaft", "rotor", "piece", "end")])
 
@@ -215,6 +261,7 @@ def example_scenes() -> dict[str, hm.Scene]:
     found = {type(law).__name__: holding(law) for law in LAWS}
     read = hm.Scene(name="read", parts={**train().parts, "encoder": Sensor(quantity="load.angle")}, connections=train().connections)
     found |= {type(effect).__name__: read.with_effect(effect, at=at, name="the_effect") for effect, at in EFFECTS}
+    found |= {type(effect).__name__: rotor_scene(LINEAR).with_effect(effect, at=at, name="the_effect") for effect, at in ROTOR_EFFECTS}
     found |= {f"gear {k}": train().replacing(gear=drive.replacing(damping=2.0)) for k, drive in enumerate(gears())}
     controlled = dict(train(motor=CommandedMotor(torque_limit=5.0, current_lag=1e-3)).parts)
     controlled["control"] = SpeedController(

@@ -472,3 +472,44 @@ def test_an_axial_crossing_of_the_first_order_is_marked() -> None:
         if word == "axial"
     }
     assert found == {50: "", 100: "axial"}
+
+
+@pytest.mark.parametrize("first_ball", [0.0, 0.3, 0.6])
+def test_balls_in_one_position_neither_hold_the_spin_nor_drive_it(first_ball: float) -> None:
+    # their force changes with the spin angle: as a stiffness a torsional mode of 0.02 rad/s, and growth where two balls share the load
+    law = hm.BallBearing(
+        balls=7.0,
+        contact_stiffness=5e9,
+        ball_diameter=0.01,
+        pitch_diameter=0.05,
+        radial_clearance=2e-6,
+        damping=200.0,
+        axial_stiffness=1e6,
+        axial_damping=10.0,
+        tilt_stiffness=2e3,
+        tilt_damping=1.0,
+        first_ball=first_ball,
+    )
+    parts = {
+        "motor": hm.Motor(inertia=0.02, characteristic=np.zeros_like),
+        "shaft": hm.Shaft(stiffness=900.0, damping=0.01),
+        "disc": hm.Rotor(mass=8.0, polar_inertia=0.04, transverse_inertia=0.0206),
+        "bearing": hm.Bearing(law=law),
+        "weight": hm.Gravity(),
+    }
+    scene = hm.Scene(name="balls", parts=parts, connections=[("motor", "shaft", "disc", "bearing")])
+    diagram = hm.campbell(scene, np.linspace(200.0, 400.0, 3))
+    assert diagram.stable.all()
+    assert not len(diagram.threshold_speeds)
+    modes = hm.whirl_modes(scene, 300.0)
+    assert modes.status == "complete"
+    assert modes.free_motions == 1, "the line turns freely"
+    torsion = [f for f, word in zip(modes.natural, modes.whirl, strict=True) if word == "torsional"]
+    assert torsion == pytest.approx([math.sqrt(900.0 * (1.0 / 0.02 + 1.0 / 0.04))], rel=1e-8)
+    # across the axis the disc, loaded by its weight, sees the bearing with its balls in that position
+    support = law.linearised(load=(0.0, -8.0 * 9.80665), speed=300.0)
+    stiffness, damping = support.stiffness_matrix()[:2, :2], support.damping_matrix()[:2, :2]
+    system = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness / 8.0, -damping / 8.0]])
+    exact = np.sort(np.abs(np.linalg.eigvals(system)))[::2]
+    for frequency in exact:
+        assert np.min(np.abs(modes.natural / frequency - 1.0)) < 1e-7

@@ -156,6 +156,19 @@ def test_nonlinear_bearings_and_housings_give_back_what_they_take(law: hm.Bearin
     assert np.ptp(balance.total) < 1e-6 * np.max(elastic) + allowed(response) * balance.energy_scale
 
 
+def test_an_inertia_that_only_turns_keeps_its_share_of_the_energy() -> None:
+    # an unbalanced rotor pulls at its own spin; the flywheel has J w^2/2 and no more, J = 0.05 kg m^2
+    law = hm.LinearBearing.isotropic(radial=1e6, damping=0.0, **LAW)
+    parts = {"r": ROTOR_1, "b": hm.Bearing(law=law), "flywheel": hm.Inertia(inertia=0.05)}
+    scene = hm.Scene(name="flywheel", parts=parts, connections=[("b", "r"), ("flywheel", "r")])
+    response = hm.simulate(scene, 0.02, solver=TIGHT, initial_speed=300.0, initial={"r.x": 1e-3, "r.psi": 2e-3})
+    balance = hm.energy_balance(response)
+    assert np.ptp(balance.total) < allowed(response) * balance.energy_scale
+    (rotor,) = (motion for motion in motions(response))
+    np.testing.assert_allclose(balance.kinetic, rotor.energy + 0.5 * 0.05 * response.values["r.speed"] ** 2, rtol=1e-13)
+    assert np.ptp(response.values["r.speed"]) > 1e-3
+
+
 def test_weight_holds_energy_of_height() -> None:
     rotor = ROTOR_1.replacing(eccentricity=0.01, tilt=0.0)
     law = hm.LinearBearing.isotropic(radial=1e7, damping=0.0, **LAW)

@@ -12,15 +12,13 @@ import numpy as np
 
 from hdrive_mbs.analysis.run_up.rest_positions import FreeLine, RestPositions, without_drive
 from hdrive_mbs.analysis.run_up.run_up_figures import LAST_PART, LineFigures, line_figures
+from hdrive_mbs.analysis.run_up.run_up_start import Start, oil_films, starts
 from hdrive_mbs.analysis.run_up.run_up_step import NEAR, choose_step, fastest_speeds, reference_speed
 from hdrive_mbs.analysis.run_up.speed_peaks import SpeedPeak
 from hdrive_mbs.analysis.run_up.torque_balance import TorqueBalance
 from hdrive_mbs.analysis.time_response import Response, simulate
-from hdrive_mbs.analysis.unbalance.synchronous_whirl import CriticalSpeed, critical_speeds, steady_whirl
+from hdrive_mbs.analysis.unbalance.synchronous_whirl import CriticalSpeed, critical_speeds
 from hdrive_mbs.analysis.whirl.rotor_places import reference_shaft, rotor_masses, spin_ratios
-from hdrive_mbs.bearings.friction import WithFriction
-from hdrive_mbs.bearings.journal import JournalBearing
-from hdrive_mbs.components.bearing import Bearing
 from hdrive_mbs.engine.solvers import Solver, Trapezoidal
 from hdrive_mbs.errors import AnalysisError, ParameterError, SimulationError, unknown_place
 from hdrive_mbs.network.network import Network
@@ -45,13 +43,16 @@ class RunUp(Response):
 
     rotors : names of the rotors (or of the places asked for)
     reference : place whose speed the line is judged by
-    peak_amplitude, peak_speed, peak_time : rotor -> largest whirl of C [m], its speed [rad/s] and time [s] then
+    peak_amplitude, peak_speed, peak_time : rotor -> largest whirl of C [m], its speed [rad/s] and time [s] then; after the
+        first revolution of the rotor, in which a journal lifts off or a start rings (of the whole run if it turns less)
     mass_centre_amplitude, mass_centre_speed, mass_centre_time : the same of P
-    peak_distance : rotor -> largest distance of C from the axis [m]
+    peak_distance : rotor -> largest distance of C from the axis [m], from the start on
     maxima : rotor -> rows of (speed, amplitude, time, prominence, critical speed), see ``peaks``
     final_speed : of the reference at the end: parabola through the last two revolutions [rad/s]
     final_speeds : rotor -> the same
-    critical_speeds : undamped, of the reference, excited by the unbalance, as far as the run could meet them [rad/s]
+    critical_speeds : undamped, of the reference, excited by the unbalance, as far as the run could meet them [rad/s]; none
+        with oil films, whose stiffness changes with the speed and whose damping and cross terms make the critical speeds
+        (``campbell`` has them all in it)
     captured : whether the spin stays below a speed that its drive would reach, because whirl takes the torque
     acceleration : mean over the last part of the run [rad/s^2]
     applied_torque, whirl_torque : mean torque of drive, loads and drag over the last part, and what whirl takes of
@@ -111,7 +112,8 @@ def run_up(
         spin; where balls or teeth excite at a multiple of it, and for stiff nonlinear laws, look at estimate_error
     from_static : start in the static deflection at the initial speed and, if the line turns, on the steady orbits of
         the linearised line; else undeflected, which rings
-    initial_speed : of the reference shaft [rad/s]; if 0, that of a prescribed motion at t = 0
+    initial_speed : of the reference shaft [rad/s]; if 0, that of a prescribed motion at t = 0.  A line on oil films that
+        cannot start from 0 starts at 0.1 rad/s, or at 1 rad/s, which the status says
     places : whose peaks are wanted; every rotor if not given
     sample_step : as for simulate
     estimate_error : run with half the step too, return that run and the error of its peaks from their difference
@@ -198,35 +200,38 @@ def _run(
         chosen = choose_step(whirling, ratios, criticals, duration, accuracy, max(fastest.values(), default=0.0))
         solver = Trapezoidal(step=chosen.step, newton_tolerance=chosen.newton_tolerance)
         reason = chosen.reason
-    start = _start(scene, line, initial_speed) if from_static else {}
 
-    def once(with_solver: Solver) -> tuple[Response, LineFigures]:
+    films = oil_films(scene)
+    told = () if films else criticals
+
+    def once(with_solver: Solver, start: Start) -> tuple[Response, LineFigures]:
+        response = simulate(
+            scene,
+            duration,
+            solver=with_solver,
+            initial_speed=start.speed,
+            initial=start.values,
+            sample_step=sample_step,
+            progress=progress,
+            cancel=cancel,
+        )
+        return response, line_figures(network, response, reference, masses, static.table, [item.speed for item in told])
+
+    failed: SimulationError | None = None
+    for start in starts(scene, line, initial_speed, from_static=from_static):
         try:
-            response = simulate(
-                scene,
-                duration,
-                solver=with_solver,
-                initial_speed=initial_speed,
-                initial=start,
-                sample_step=sample_step,
-                progress=progress,
-                cancel=cancel,
-            )
+            response, figures = once(solver, start)
         except SimulationError as error:
-            films = _oil_films(scene) if initial_speed == 0.0 else []
-            if not films:
-                raise
-            raise SimulationError(
-                f"{error} At rest the film of {', '.join(films)} carries nothing, and as it begins to, its damping jumps. "
-                "Start with a small speed, initial_speed=1.0 (rad/s), or with from_static=False."
-            ) from error
-        speeds = [item.speed for item in criticals]
-        return response, line_figures(network, response, reference, masses, static.table, speeds)
-
-    response, figures = once(solver)
+            failed = failed or error
+            continue
+        notes += [start.note] if start.note else []
+        break
+    else:
+        assert failed is not None
+        raise _from_rest(failed, scene, initial_speed)
     errors: dict[str, float] = {}
     if estimate_error and response.status == "complete":
-        finer, better = once(solver.refined())
+        finer, better = once(solver.refined(), start)
         if finer.status == "complete":
             errors = _errors(figures, better, 1.0 if solver.adaptive else 2.0**solver.order - 1.0)
             if figures.captured != better.captured:
@@ -234,19 +239,19 @@ def _run(
             response, figures = finer, better
     if not np.any(response.values[f"{reference}.speed"]):
         notes.append("nothing turns the line: give it a DriveTorque or a Motor, or an initial_speed")
-    settings = {"accuracy": accuracy, "from_static": from_static, "places": tuple(masses), "step": reason}
-    return _result(response, figures, reference, criticals, static, errors, settings, notes)
+    settings: dict[str, object] = {"accuracy": accuracy, "from_static": from_static, "places": tuple(masses), "step": reason}
+    if films:
+        settings["critical_speeds"] = f"left out, as the film of {', '.join(films)} makes them another matter: see campbell"
+    return _result(response, figures, reference, told, static, errors, settings, notes)
 
 
-def _oil_films(scene: Scene) -> list[str]:
-    """Names of the bearings with an oil film."""
-    found = []
-    for name, part in scene.parts.items():
-        law = part.law if isinstance(part, Bearing) else None
-        while isinstance(law, WithFriction):
-            law = law.law
-        found += [name] if isinstance(law, JournalBearing) else []
-    return found
+def _from_rest(error: SimulationError, scene: Scene, speed: float) -> SimulationError:
+    """The error, with the way out where an oil film is run up from rest."""
+    films = oil_films(scene) if speed == 0.0 else []
+    if not films:
+        return error
+    hint = f"At rest the film of {', '.join(films)} carries nothing, and as it begins to, its damping jumps. "
+    return SimulationError(f"{error} {hint}Start with more speed, initial_speed=10.0 (rad/s), give a shorter step, or from_static=False.")
 
 
 def _prescribed_speed(network: Network) -> float:
@@ -274,23 +279,6 @@ def _chosen(scene: Scene, places: Sequence[str] | None) -> dict[str, RigidMass]:
     if not chosen:
         raise AnalysisError(f"{scene.name!r} has no rotor; name the places whose peaks are wanted. Places: {', '.join(known)}.")
     return chosen
-
-
-def _start(scene: Scene, line: FreeLine, speed: float) -> dict[str, float]:
-    """Initial values: static deflection and, if the line turns, the steady orbits."""
-    try:
-        point = line.point(speed)
-    except AnalysisError as error:
-        raise AnalysisError(f"{error} Or start at another initial_speed, or with from_static=False.") from None
-    bodies = scene.network().bodies
-    values = {body.name: point.angles[body.name] for body in bodies if body.lateral}
-    values |= {f"{body.name}.angle": body.sense * point.angles[body.name] for body in bodies if not body.lateral}
-    if speed != 0.0:
-        places, rates = steady_whirl(line.lines, point)
-        for name in places:
-            values[name] = values.get(name, 0.0) + places[name]
-            values[f"{name}_rate"] = rates[name]
-    return {name: value for name, value in values.items() if value != 0.0}
 
 
 def _errors(rough: LineFigures, fine: LineFigures, divisor: float) -> dict[str, float]:

@@ -23,6 +23,9 @@ LAST_PART = 0.1
 BALANCED = 4.0
 """Revolutions over which they are balanced at least."""
 
+SETTLED = 1.0
+"""Revolutions of a rotor before its largest whirl is looked for: a journal lifts off its wall, a start rings."""
+
 REVOLUTIONS = 2.0
 """Revolutions at the end of the run whose parabola gives the final speed."""
 
@@ -40,8 +43,8 @@ class Peak:
 class RotorFigures:
     """Of one rotor.
 
-    centre, mass_centre : peak of the whirl about the static deflection
-    distance : largest distance of the centre from the axis [m]
+    centre, mass_centre : peak of the whirl about the static deflection, after the first revolution
+    distance : largest distance of the centre from the axis [m], of the whole run
     maxima : rows of SpeedPeak
     channels : ending -> values and doc of histories that the response does not have
     """
@@ -69,10 +72,12 @@ def rotor_figures(
     p, p_rate = mass_centre_motion(response, name, mass)
     whirl, mass_whirl = Whirl(times, z - static, rate), Whirl(times, p - static, p_rate)
     found = speed_peaks(whirl, angle, reference, criticals, lambda t: float(speed.at(t)))
+    settled = np.abs(angle - angle[0]) >= SETTLED * 2.0 * math.pi
+    first = int(np.argmax(settled))  # 0, the whole run, where the rotor does not turn that far
     about = f"the centre of mass of {name}"
     return RotorFigures(
-        centre=_peak(whirl, speed),
-        mass_centre=_peak(mass_whirl, speed),
+        centre=_peak(whirl, speed, first),
+        mass_centre=_peak(mass_whirl, speed, first),
         distance=Whirl(times, z, rate).maximum()[1],
         maxima=np.array(found, float).reshape(-1, len(SpeedPeak._fields)),
         final_speed=final_speed(times, angle, speed.values)[0],
@@ -84,8 +89,8 @@ def rotor_figures(
     )
 
 
-def _peak(whirl: Whirl, speed: TimeHistory) -> Peak:
-    time, amplitude = whirl.maximum()
+def _peak(whirl: Whirl, speed: TimeHistory, first: int) -> Peak:
+    time, amplitude = whirl.maximum(first)
     return Peak(amplitude, float(speed.at(time)), time)
 
 

@@ -23,12 +23,16 @@ STEPS = 2000
 NEAR = 1.1
 """A critical speed up to this multiple of the highest speed is met: its resonance has begun."""
 
-AT_CRITICAL = 2.0
+AT_CRITICAL = 1.75
 BESIDE = 24.0
 """(w h)^2 over these is the relative error that is allowed for at and away from critical speeds."""
 
 LESSER = 4.0
 """Multiple of the accuracy that a peak may be off where another critical speed gives the rotor a larger one."""
+
+LATE = 2.157
+"""The envelope of an undamped resonance that is swept with the acceleration a is highest at w + 2.157 sqrt(a): where
+|C(u) + i S(u) + (1 + i)/2|, C and S the Fresnel integrals, is largest, u = 1.217, w = w_critical + u sqrt(pi a)."""
 
 FEWEST = 200
 """Steps that a run has at least."""
@@ -89,10 +93,12 @@ def choose_step(
     The rule answers an excitation of frequency w as the line would at  (2/h) tan(w h/2) = w (1 + (w h)^2/12): critical
     speeds come out (w h)^2/12 too low, and a peak there with them.  Its amplitude goes with m e w^2/(c w), whose
     force is that of the lower speed: at least (w h)^2/6 too small.  As the spin gives way too, run-ups of a Jeffcott
-    rotor (from just above capture to very fast) are off by (w h)^2/2.3 to (w h)^2/2.6 with w the critical speed, and
-    two_rotor_line by (w h)^2/2.8, so
+    rotor (from just above capture to very fast) and of two_rotor_line are off by (w h)^2/2.3 or less with w the frequency
+    at their peak, which a run passes late, and with cubic springs in the bearings by up to (w h)^2/1.9, so
 
-        (w h)^2/2 <= accuracy     at each critical speed that is met.
+        (w h)^2/1.75 <= accuracy,  w = w_critical + 2.157 sqrt(a)     at each critical speed that is met,
+
+    a the mean acceleration, and w no more than the highest speed.
 
     Where another critical speed gives every rotor a larger peak (reach x amplification, the latter 1/(2 damping ratio),
     or 1.2 w/sqrt(a) in a fast run-up), up to four times as much is allowed.  Away from critical speeds an amplitude is
@@ -107,13 +113,17 @@ def choose_step(
     met = [item for item in criticals if item.speed <= NEAR * reference]
     limits = [(duration / FEWEST, f"a run has at least {FEWEST} steps")]
     for item, share in zip(met, _allowed(met, reference / duration), strict=True):
-        step = math.sqrt(AT_CRITICAL * share * accuracy) / item.frequency
-        limits.append((step, f"(w h)^2/2 <= {share * accuracy:.3g} at the critical speed w = {item.frequency:.4g} rad/s"))
+        order = item.frequency / item.speed
+        late = item.frequency + LATE * math.sqrt(order * reference / duration)
+        late = max(item.frequency, min(late, order * reference))
+        step = math.sqrt(AT_CRITICAL * share * accuracy) / late
+        name = f"w = {late:.4g} rad/s, where a run meets the critical speed of {item.frequency:.4g} rad/s"
+        limits.append((step, f"(w h)^2/{AT_CRITICAL:g} <= {share * accuracy:.3g} at {name}"))
     if top > 0.0:
         name = f"at the highest speed w = {top:.4g} rad/s"
         limits.append((math.sqrt(BESIDE * accuracy) / top, f"(w h)^2/24 <= {accuracy:.3g} {name}"))
         if not met:
-            limits.append((math.sqrt(AT_CRITICAL * accuracy) / top, f"(w h)^2/2 <= {accuracy:.3g} {name}"))
+            limits.append((math.sqrt(AT_CRITICAL * accuracy) / top, f"(w h)^2/{AT_CRITICAL:g} <= {accuracy:.3g} {name}"))
     if geared > top:
         limits.append(
             (

@@ -1,4 +1,4 @@
-"""Order tracking: amplitude and phase of orders of a shaft while its speed changes."""
+"""Order tracking: amplitude and lag of orders of a shaft while its speed changes."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from hdrive_mbs.analysis.signals.plane_signal import PlaneSignal, Signal, turnin
 from hdrive_mbs.analysis.signals.shaft_angle import TURN, ShaftAngle, shaft_history, turning_span
 from hdrive_mbs.analysis.signals.spectrum import chosen_span
 from hdrive_mbs.analysis.time_response import Response
+from hdrive_mbs.analysis.unbalance.whirl_orbit import lag
 from hdrive_mbs.errors import AnalysisError, ParameterError, unknown_place
 from hdrive_mbs.signals import FloatArray, TimeHistory
 
@@ -23,6 +24,9 @@ DEGREE = 2
 
 LARGEST_CONDITION = 1e4
 """Condition of the least squares above which orders are too close for the window."""
+
+BACKWARD = " backward"
+"""Ending of the names of tracks of backward whirl."""
 
 CHUNK = 2000
 """Windows that are worked on at once."""
@@ -55,20 +59,34 @@ class OrderTracking(Result):
     revolutions: float
 
     def track(self, order: float = 1.0, sense: str = "forward") -> ComplexArray:
-        """Complex amplitude of an order over the run, shape (n,); abs is 0-peak, the angle is the phase against phi.
+        """Complex amplitude of an order over the run, shape (n,); abs is 0-peak.
 
         sense : "forward" or "backward", for x + i y only
         """
+        return np.asarray(self.amplitudes[:, self._column(order, sense)])
+
+    def lag(self, order: float = 1.0, sense: str = "forward") -> FloatArray:
+        """Angle [rad] by which an order follows the shaft, shape (n,), from -pi/4 up to 7 pi/4: the signal, or x, is |A| cos(k phi - lag).
+
+        The same lag as that of ``unbalance_response``: -arg A, and arg A of backward whirl, whose x is Re[A exp(-i k phi)].
+        """
+        return self._lags(self._column(order, sense))
+
+    def _lags(self, column: int) -> FloatArray:
+        amplitude = self.amplitudes[:, column]
+        return lag(amplitude.conj() if self.tracks[column].endswith(BACKWARD) else amplitude)
+
+    def _column(self, order: float, sense: str) -> int:
         name = f"{order:g} {sense}" if self.two_sided else f"{order:g}"
         if name not in self.tracks:
             raise unknown_place("track", name, self.tracks, "This order tracking")
-        return np.asarray(self.amplitudes[:, self.tracks.index(name)])
+        return self.tracks.index(name)
 
     def columns(self) -> dict[str, np.ndarray]:
         columns = {"time [s]": self.times, "speed [rad/s]": self.speeds}
         for k, name in enumerate(self.tracks):
             columns[f"order {name} amplitude 0-peak [{self.unit}]"] = np.abs(self.amplitudes[:, k])
-            columns[f"order {name} phase [rad]"] = np.angle(self.amplitudes[:, k])
+            columns[f"order {name} lag [rad]"] = self._lags(k)
         return columns
 
 
@@ -84,7 +102,7 @@ def order_tracking(
     start: float | None = None,
     end: float | None = None,
 ) -> OrderTracking:
-    """Amplitude and phase of orders along a run-up or coast-down: a Bode plot without stopping.
+    """Amplitude and lag of orders along a run-up or coast-down: a Bode plot without stopping.
 
     channel : a channel, or a place with x and y, whose forward and backward whirl are told apart
     orders : periods per revolution, greater than 0

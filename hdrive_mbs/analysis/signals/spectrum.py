@@ -19,7 +19,7 @@ MOST_SAMPLES = 2**20
 
 
 class FrequencyPeak(NamedTuple):
-    """A line of a spectrum: frequency [Hz] and amplitude, 0-peak."""
+    """A line of a spectrum: frequency [rad/s] and amplitude, 0-peak."""
 
     frequency: float
     amplitude: float
@@ -30,8 +30,8 @@ class Spectrum(Result):
     """One-sided amplitude spectrum; every amplitude is 0-peak.
 
     channel, unit : of the signal and of its amplitudes
-    frequency : Hz, shape (m,), from 0 to half the sampling frequency
-    amplitude : 0-peak, shape (m,); the line at 0 Hz holds the size of the mean
+    frequency : rad/s, shape (m,), from 0 to half the sampling frequency; ``hertz`` is the same in Hz
+    amplitude : 0-peak, shape (m,); the line at 0 rad/s holds the size of the mean
     phase : of a cosine, at the start of the span [rad]
     mean : of the signal
     window : name of the window; its coherent gain is taken out
@@ -51,14 +51,14 @@ class Spectrum(Result):
     samples: int
 
     @property
-    def angular_frequency(self) -> FloatArray:
-        """The lines in rad/s."""
-        return 2.0 * np.pi * self.frequency
+    def hertz(self) -> FloatArray:
+        """The lines in Hz."""
+        return self.frequency / (2.0 * np.pi)
 
     @property
     def resolution(self) -> float:
-        """Distance of two lines [Hz]: one over the span."""
-        return 1.0 / (self.end - self.start)
+        """Distance of two lines [rad/s]: 2 pi over the span."""
+        return 2.0 * np.pi / (self.end - self.start)
 
     def peaks(self, count: int = 10, *, above: float = 0.01) -> tuple[FrequencyPeak, ...]:
         """The largest maxima, largest first, with frequency and amplitude interpolated between lines.
@@ -70,8 +70,8 @@ class Spectrum(Result):
 
     def columns(self) -> dict[str, np.ndarray]:
         return {
-            "frequency [Hz]": self.frequency,
-            "angular frequency [rad/s]": self.angular_frequency,
+            "frequency [rad/s]": self.frequency,
+            "frequency [Hz]": self.hertz,
             f"{self.channel} amplitude 0-peak [{self.unit}]": self.amplitude,
             "phase [rad]": self.phase,
         }
@@ -109,11 +109,11 @@ def spectrum(
     amplitude, phase = line_amplitudes(values, shape)
     return Spectrum(
         scene=scene,
-        status=folding_note(amplitude, f"{0.5 / spacing:.4g} Hz", "give a smaller step"),
+        status=folding_note(amplitude, f"{np.pi / spacing:.4g} rad/s", "give a smaller step"),
         settings={"window": window, "start": begin, "end": finish, "step": spacing},
         channel=history.name,
         unit=history.unit,
-        frequency=np.arange(len(amplitude)) / (finish - begin),
+        frequency=(2.0 * np.pi / (finish - begin)) * np.arange(len(amplitude), dtype=np.float64),
         amplitude=amplitude,
         phase=phase,
         mean=float(np.mean(values)),

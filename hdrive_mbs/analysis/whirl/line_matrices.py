@@ -3,6 +3,11 @@
 Everything is seen from the fixed frame.  Shaft sections and bearing coefficients enter as they are; rotors enter
 balanced and upright, with gyroscopic moments (the exact equations linearised, so whirl comes out in the inertial
 frame); every other law is differentiated once and evaluated at each state.
+
+What the forces across the axis and the laws of bearings change with the spin angle is left out: that angle goes on
+with the rotation and does not stay near its value, so that these derivatives are periodic (balls that pass) and no
+stiffness.  A ball bearing keeps its stiffness at the position of the balls that belongs to the angles given; taken as
+springs, the others would hold the spin or drive it away from that position.
 """
 
 from __future__ import annotations
@@ -16,8 +21,9 @@ import numpy.typing as npt
 
 from hdrive_mbs.expression import Expression, TraceError, Value, derivative, evaluate, record, scalar_function, trace, variables
 from hdrive_mbs.network.circulation import Circulation
-from hdrive_mbs.network.coupling import Gyroscope
+from hdrive_mbs.network.coupling import Coupling, Gyroscope
 from hdrive_mbs.network.elements import Element, StateRate
+from hdrive_mbs.network.excitation import Excitation
 from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment, recording_moment
 from hdrive_mbs.network.network import Network
@@ -70,11 +76,12 @@ class LineMatrices:
         self.network = network
         self.names = tuple(body.name for body in network.bodies)
         self._index = {name: k for k, name in enumerate(self.names)}
+        self._lateral = frozenset(body.name for body in network.bodies if body.lateral)
         n = len(self.names)
         self.mass = network.constant_mass.copy()
         self._damping, self._stiffness = np.zeros((n, n)), np.zeros((n, n))
         self._matrices = np.zeros((2, n, n))  # damping and stiffness of matrix elements alone
-        self._laws = [element for element in network.elements if not isinstance(element, (MatrixElement, StateRate))]
+        self._laws = [element for element in network.elements if not isinstance(element, (MatrixElement, StateRate, Excitation))]
         self._spinning: list[_Spinning] = []
         self._slopes: list[_Slope] = []
         self._plain: list[Element] = []
@@ -99,7 +106,7 @@ class LineMatrices:
             at = np.ix_(*[[self._index[name] for name in element.coordinates]] * 2)
             share = element.circulatory / len(element.spins)
             self._spinning += [_Spinning(spin, "stiffness", at, sense * share) for spin, sense in element.spins]
-        elif not isinstance(element, StateRate):
+        elif not isinstance(element, (StateRate, Excitation)):
             self._add_law(element)
 
     def _add_gyroscope(self, psi: str, theta: str, spin: str, polar: float) -> None:
@@ -124,8 +131,17 @@ class LineMatrices:
             recorded = record(force)
             for name in variables(recorded):
                 kind, _, owner = name.partition(":")
-                if kind in _KINDS and owner in self._index:
+                if kind in _KINDS and owner in self._index and not (kind == "angle" and self._is_periodic(element, target, owner)):
                     self._add_slope(_Slope(self._index[target], self._index[owner], kind, derivative(recorded, name)))
+
+    def _is_periodic(self, element: Element, target: str, coordinate: str) -> bool:
+        """Whether the force on a target depends on the angle of a spin and not on a twist between two: see above."""
+        if coordinate in self._lateral:
+            return False
+        if isinstance(element, Coupling):
+            along = [factors for factors in element.stretches.values() if coordinate in factors]
+            return all(self._lateral.issuperset(factors.keys() - {coordinate}) for factors in along)
+        return target in self._lateral
 
     def _add_slope(self, slope: _Slope) -> None:
         if variables(slope.value):
@@ -174,7 +190,7 @@ class LineMatrices:
                     )
                     sides.append(element.contribution(there))
                 for target, up in sides[0].items():
-                    if target in self._index:
+                    if target in self._index and not (kind == "angles" and self._is_periodic(element, target, name)):
                         matrix[self._index[target], column] -= (float(up) - float(sides[1][target])) / (2.0 * h)
 
     def depends_on(self) -> frozenset[str] | None:
@@ -195,7 +211,7 @@ class LineMatrices:
 
     def varying(self) -> dict[str, set[str]]:
         """Lateral coordinates whose slopes depend on the state -> on which variables (``speed:rotor``); none for a linear line."""
-        lateral = {body.name for body in self.network.bodies if body.lateral}
+        lateral = self._lateral
         found: dict[str, set[str]] = {}
         for slope in self._slopes:
             if self.names[slope.row] in lateral and self.names[slope.column] in lateral:

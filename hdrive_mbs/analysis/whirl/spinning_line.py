@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.analysis.operating_point import at_speed
 from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 from hdrive_mbs.analysis.whirl.rotor_point import RotorPoint, rotor_point
+from hdrive_mbs.components.motor import Motor
 from hdrive_mbs.components.rotor import Rotor
+from hdrive_mbs.motors.inverter import InverterMotor
+from hdrive_mbs.motors.torque_speed_table import TorqueSpeedTable
 from hdrive_mbs.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
@@ -26,6 +31,33 @@ def without_unbalance(scene: Scene) -> Scene:
     return scene.replacing(changes) if changes else scene
 
 
+def eccentric_inertia(scene: Scene, names: Sequence[str]) -> FloatArray:
+    """What eccentric masses add to the inertias about the axis, sum of m e^2 on each spin, (n, n): of an arm that is most of it."""
+    found = np.zeros((len(names), len(names)))
+    places = scene.network().places
+    for name, part in scene.parts.items():
+        if isinstance(part, Rotor) and places[name] in names:
+            k = list(names).index(places[name])
+            found[k, k] += part.mass * part.eccentricity**2
+    return found
+
+
+def fed_in_step(scene: Scene) -> Scene:
+    """The scene with inverters that feed their motors with the frequency of the speed at hand, not with that at t = 0.
+
+    A motor near its synchronous speed has the slope of Kloss's curve at no slip, dM/dw = -2 M_b/(s_b w_s), at every frequency
+    (constant flux).  Its torque itself does not matter: the motor turns at a given speed.
+    """
+    far = 1e6
+    changes = {}
+    for name, part in scene.parts.items():
+        motor = part.characteristic if isinstance(part, Motor) else None
+        if isinstance(motor, InverterMotor):
+            torque = far * 2.0 * motor.breakdown_torque / (motor.breakdown_slip * motor.synchronous_speed)
+            changes[f"{name}.characteristic"] = TorqueSpeedTable(speeds=(-far, far), torques=(torque, -torque))
+    return scene.replacing(changes) if changes else scene
+
+
 class SpinningLine:
     """M q'' + D(W) q' + K(W) q = 0 of all coordinates at speed W of the reference shaft, seen from the fixed frame.
 
@@ -34,13 +66,13 @@ class SpinningLine:
     """
 
     def __init__(self, scene: Scene) -> None:
-        self.scene = without_unbalance(scene)
+        self.scene = fed_in_step(without_unbalance(scene))
         first = at_speed(self.scene, 0.0)
         self.network = first.network()
         self._prescribed = first is not self.scene
         self._lines = LineMatrices(self.network)
         self.names = self._lines.names
-        self.mass = self._lines.mass
+        self.mass = self._lines.mass + eccentric_inertia(scene, self.names)
         self.couplings = self._lines.couplings()
         self._spins = {body.name: body.sense * body.ratio for body in self.network.bodies if not body.lateral}
         self._spins |= {motion.name: motion.sense * motion.ratio for motion in self.network.motions}

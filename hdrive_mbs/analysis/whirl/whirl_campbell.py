@@ -14,7 +14,7 @@ from hdrive_mbs.analysis.drive_train.campbell import ExcitationOrder
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.whirl.block_branches import FEWEST, BlockBranches
 from hdrive_mbs.analysis.whirl.crossings import order_lines, zeros
-from hdrive_mbs.analysis.whirl.line_block import line_blocks
+from hdrive_mbs.analysis.whirl.line_block import LineBlock, line_blocks
 from hdrive_mbs.analysis.whirl.mode_tracking import NONE
 from hdrive_mbs.analysis.whirl.roots import ComplexArray, FloatArray
 from hdrive_mbs.analysis.whirl.spinning_line import SpinningLine
@@ -52,7 +52,8 @@ class WhirlCampbell(Result):
     critical_orders, critical_branches : index of the order line and of the branch
     critical_whirl, critical_damping_ratios : of the mode there
     critical_notes : "", or why unbalance does not excite this crossing much: "backward" (nearly circles; a flat backward
-        orbit of unequal bearings is excited), "heavily damped", "axial", ...
+        orbit of unequal bearings is excited), "other shaft" (nothing but torque joins it to the shaft of the order),
+        "heavily damped", "axial", ...
     threshold_speeds : where a branch begins or ceases to grow [rad/s], ascending
     threshold_branches, threshold_frequencies : which branch, and its frequency there [rad/s]
     threshold_notes : "unstable above" or "stable above"
@@ -208,10 +209,12 @@ class _Critical:
     circularity: float
     damping_ratio: float
     per_turn: float
+    elsewhere: bool
 
     @property
     def note(self) -> str:
         notes = ["backward"] if self.whirl == "backward" and self.circularity < BACKWARD else []
+        notes += ["other shaft"] if self.elsewhere else []
         notes += ["axial"] if self.whirl == "axial" and self.per_turn == 1.0 else []
         notes += ["heavily damped"] if self.damping_ratio > HEAVY else []
         notes += ["unstable"] if self.damping_ratio < -STABLE else []
@@ -308,8 +311,20 @@ def _criticals(kinds: WhirlKinds, grid: FloatArray, branches: list[_Branch], lin
                 if there is not None:
                     value, shape = there
                     words, circles = kinds.classify(branch.part.block.index, shape, np.array([-1.0 if speed < 0.0 else 1.0]))
-                    found.append(_Critical(speed, order, number, words[0], float(circles[0]), -value.real / abs(value), line.order))
+                    damping = -value.real / abs(value)
+                    elsewhere = _is_elsewhere(branch.part.block, line)
+                    found.append(_Critical(speed, order, number, words[0], float(circles[0]), damping, line.order, elsewhere))
     return sorted(found, key=lambda critical: critical.speed)
+
+
+def _is_elsewhere(block: LineBlock, line: ExcitationOrder) -> bool:
+    """Whether a motion is of stations that all turn at another speed than the place of the order, and of no spin."""
+    ratios = block.line.ratios
+    if any(name in ratios for name in block.names):
+        return False
+    own = {abs(ratios[station]) for station in (name.rpartition(".")[0] for name in block.names) if station in ratios}
+    turning = line.slope / line.order
+    return bool(own) and all(abs(ratio - turning) > 1e-6 * max(ratio, turning) for ratio in own)
 
 
 def _thresholds(grid: FloatArray, branches: list[_Branch]) -> list[_Threshold]:

@@ -1,0 +1,1 @@
+"""How a sweep scales with workers."""

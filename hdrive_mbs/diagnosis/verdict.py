@@ -1,0 +1,101 @@
+"""From fits to a verdict: what is claimed, how sure it is, and what cannot be told apart.
+
+The rules look at three figures of each fit on all records: the log odds (evidence over that of the refitted nominal
+model), the misfit on samples that no fit saw, and how much of the nominal model's misfit is gone.  The constants were
+chosen on simulated cases of our own making (benchmarks/withheld), not on those that are scored.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from hdrive_mbs.diagnosis.search import Found, Label
+
+ODDS = 8.0
+"""Log odds below which an effect is not claimed."""
+CLEAN = 1.15
+"""Mean square of the refitted nominal model up to which its misfit counts as noise."""
+EXPLAINED = 0.6
+"""Share of the logarithm of the nominal misfit that a claim has to take away; with less the cause is unknown."""
+FITS = 1.6
+"""Mean square below which a claim stands whatever its share."""
+TIED = 5.0
+"""Difference of log odds within which two labels cannot be told apart."""
+SECOND = 25.0
+"""Log odds that a second cause needs over the first alone."""
+TEMPERATURE = 12.0
+"""By which differences of log odds are divided before they become probabilities: models are never quite right."""
+
+
+@dataclass(frozen=True, eq=False)
+class Claim:
+    """A verdict with the fit that it rests on.
+
+    kind : "none", "effect", "parameter", "sensor" or "unknown";  fit : None for "none"
+    tied : labels that cannot be told from the claim;  probabilities : of every label, "none" and "unknown" included
+    """
+
+    kind: str
+    fit: Found | None
+    tied: tuple[Label, ...]
+    probabilities: dict[Label, float]
+
+
+NONE: Label = ("none", "")
+UNKNOWN: Label = ("unknown", "")
+
+
+def judge(null_misfit: float, found: Sequence[Found], pair: Found | None) -> Claim:
+    """The verdict.
+
+    null_misfit : mean square of the refitted nominal model on samples that no fit saw
+    found : single causes on all samples, best first;  pair : the best pair, its log odds those over the nominal model
+    """
+    singles = [item for item in found if item.log_odds > ODDS]
+    best = singles[0] if singles else None
+    if best is None:
+        kind = "none" if null_misfit <= CLEAN else "unknown"
+        return Claim(kind, None, (), _probabilities(found, null_misfit, kind))
+    chosen = best
+    if pair is not None and pair.log_odds - best.log_odds > SECOND and pair.fitted.chi_held < best.fitted.chi_held:
+        chosen = pair
+    probabilities = _probabilities(found, null_misfit, "effect")
+    if not explains(null_misfit, chosen.fitted.chi_held):
+        return Claim("unknown", chosen, (), probabilities)
+    tied = tuple(item.suspect.label for item in singles if chosen is best and best.log_odds - item.log_odds < TIED)
+    return Claim(kind_of(chosen), chosen, tied, probabilities)
+
+
+def explains(before: float, after: float) -> bool:
+    """Whether a claim takes enough of the misfit away."""
+    if after <= FITS:
+        return True
+    if after >= before:
+        return False
+    return 1.0 - math.log(after) / math.log(before) >= EXPLAINED
+
+
+def kind_of(found: Found) -> str:
+    """The verdict that a cause stands for: that of its first part."""
+    hypothesis = found.fitted.hypothesis
+    kinds = [type(item.effect).kind for item in hypothesis.added]
+    if not kinds:
+        return "parameter"
+    return "sensor" if all(kind == "sensor" for kind in kinds) and not hypothesis.loose else "effect"
+
+
+def _probabilities(found: Sequence[Found], null_misfit: float, kind: str) -> dict[Label, float]:
+    scores: dict[Label, float] = {NONE: 0.0}
+    for item in found:
+        label = item.suspect.label
+        scores[label] = max(scores.get(label, -math.inf), item.log_odds / TEMPERATURE)
+    if kind == "unknown" or null_misfit > CLEAN:
+        best = max(found, key=lambda item: item.log_odds, default=None)
+        left = null_misfit if best is None else best.fitted.chi_held
+        scores[UNKNOWN] = max(scores.values()) + (2.0 if best is None or not explains(null_misfit, left) else -3.0)
+    top = max(scores.values())
+    weights = {label: math.exp(score - top) for label, score in scores.items()}
+    total = sum(weights.values())
+    return {label: weight / total for label, weight in sorted(weights.items(), key=lambda pair: -pair[1])}

@@ -1,0 +1,50 @@
+"""A connection that is stiffer or softer than known in one sense of twist only."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hdrive_mbs.effects.effect import LawEffect
+from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.expression import Value
+from hdrive_mbs.quantities import option, parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class OneSidedStiffness(LawEffect):
+    """The elastic torque of a connection, scaled in one sense and as known in the other.
+
+    tau = T(x, v) + a s T(x, 0),  s = tanh(y/x_0),  y = max(x, 0) if forward, max(-x, 0) if reverse
+
+    with the law T(twist, rate) as it is without the effect; the change comes in over the twist x_0.  Damping stays.  The
+    elastic torque depends on the twist alone, so no energy is made.
+
+    Source: catalogues and tests of harmonic drives report loops of different slope in both senses, e.g. Tuttle, Seering,
+    IEEE Trans. Robotics and Automation 12 (1996) 368; the form is our own.  It is StiffnessAsymmetry for a data sheet
+    that was measured in one sense.  Leaves out that lost motion may differ as well.
+    """
+
+    change: float = parameter("1", "a, share by which that sense is stiffer", low=-0.8, high=2.0, typical=(-0.5, 0.5))
+    onset_twist: float = parameter("rad", "x_0, twist over which the change comes in", default=1e-5, above=0.0, typical=(1e-6, 1e-3))
+    side: str = option("'forward' (driving) or 'reverse' (driven back): the sense that is changed", default="reverse")
+
+    family: ClassVar[str] = "stiffness_asymmetry"
+    signature: ClassVar[str] = "twist and resonance as expected in one sense of load, off in the other"
+    starts: ClassVar[Mapping[str, tuple[str, ...]]] = {"side": ("forward", "reverse")}
+
+    def check(self) -> None:
+        if self.side not in ("forward", "reverse"):
+            raise ParameterError(f"OneSidedStiffness.side = {self.side!r}: must be 'forward' or 'reverse'.")
+
+    def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:
+        sense = 1.0 if self.side == "forward" else -1.0
+
+        def torque(twist: Value, rate: Value) -> Value:
+            beyond = np.maximum(sense * twist, 0.0)
+            return law(twist, rate) + self.change * np.tanh(beyond / self.onset_twist) * law(twist, 0.0)
+
+        return torque

@@ -1,0 +1,76 @@
+"""Dry friction in one law: Stribeck drop, unequal senses, torque that builds up over an angle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hdrive_mbs.effects.effect import MemoryTorqueEffect
+from hdrive_mbs.effects.fast_sliding import FASTEST_RATE, followed_share, mixed
+from hdrive_mbs.expression import Value
+from hdrive_mbs.quantities import parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class PreslidingFriction(MemoryTorqueEffect):
+    """Dahl's build-up of the torque towards a sliding torque of Stribeck's shape that may differ in both senses.
+
+    tau = -y,  dy/dt = (T_C/x_p) w D,  D = |1 - u|^n sign(1 - u),  u = y sign(w)/L(w),
+    L(w) = T_C (1 + a sign(w)) (1 + d/(1 + |w/w_S|^p))
+
+    y runs to L sign(w) over an angle of about x_p.  A small x_p is sliding friction without presliding, n = 1 LuGre's
+    law without damping.  With the stored energy y^2 x_p/(2 T_C) the heat is |w| L u (1 - D), which is never negative.
+    Sliding by x_p faster than at the rate f is as in fast_sliding.py.
+
+    Source: Dahl, AIAA Journal 14 (1976) 1675, with the drop of Hess, Soom, J. Tribology 112 (1990) 147 (there p = 2),
+    which fades more slowly than the Gauss curve of CoulombStribeckFriction.  Leaves out the damping of the bristles
+    (LuGreFriction), load, temperature, and a lag of the sliding torque behind the speed.
+    """
+
+    coulomb: float = parameter("N m", "sliding torque T_C", low=0.0, high=1e3, typical=(5e-3, 50.0))
+    drop: float = parameter("1", "d, share by which breaking away takes more", default=0.0, low=0.0, high=10.0, typical=(0.02, 2.0))
+    stribeck_speed: float = parameter("rad/s", "speed w_S of the drop", default=1.0, above=0.0, typical=(0.01, 20.0))
+    stribeck_exponent: float = parameter("1", "p, shape of the drop", default=1.5, low=0.25, high=4.0, typical=(0.5, 2.5))
+    asymmetry: float = parameter("1", "a, share by which forward friction is larger", default=0.0, low=-0.9, high=0.9, typical=(-0.3, 0.3))
+    presliding: float = parameter("rad", "x_p, angle over which the torque builds up", above=0.0, typical=(1e-4, 0.1))
+    exponent: float = parameter("1", "n, shape of the build-up", default=1.0, low=0.5, high=4.0, typical=(1.0, 2.5))
+    fastest_rate: float = parameter("1/s", "f, rate up to which the state is followed", default=FASTEST_RATE, above=0.0)
+
+    family: ClassVar[str] = "friction"
+    dissipative: ClassVar[bool] = True
+    signature: ClassVar[str] = (
+        "torque against the motion that turns over within a small angle after each reversal, larger at low speed and in one sense"
+    )
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"presliding": (5e-4, 5e-3), "stribeck_speed": (0.1, 5.0)}
+
+    def sliding_torque(self, speed: Value) -> Value:
+        """L(w) [N m]."""
+        size = self.coulomb * (1.0 + self.asymmetry * np.sign(speed))
+        if self.drop == 0.0:
+            return size
+        return size * (1.0 + self.drop / (1.0 + np.abs(speed / self.stribeck_speed) ** self.stribeck_exponent))
+
+    def states(self) -> Mapping[str, str]:
+        return {"torque": "N m"} if self.coulomb > 0.0 else {}
+
+    def state_rate(self, name: str, time: Value, angle: Value, speed: Value, state: Mapping[str, Value]) -> Value:
+        left = 1.0 - state[name] * np.sign(speed) / self.sliding_torque(speed)
+        share = self._share(speed, state[name])
+        return share * self.coulomb / self.presliding * speed * np.abs(left) ** self.exponent * np.sign(left)
+
+    def _share(self, speed: Value, torque: Value) -> Value:
+        sliding = self.sliding_torque(speed)
+        slope = 1.0 if self.exponent == 1.0 else self._slope(1.0 - torque * np.sign(speed) / sliding)
+        return followed_share(slope * np.abs(speed) * (self.coulomb / self.presliding) / sliding, self.fastest_rate)
+
+    def _slope(self, left: Value) -> Value:
+        return self.exponent * np.maximum(np.abs(left), 1e-9) ** (self.exponent - 1.0)
+
+    def torque(self, time: Value, angle: Value, speed: Value, state: Mapping[str, Value]) -> Value:
+        return -sum(mixed(self._share(speed, state[name]), state[name], self.sliding_torque(speed), speed) for name in self.states())
+
+    def stored(self, state: Mapping[str, Value]) -> Value:
+        return sum(0.5 * self.presliding / self.coulomb * state[name] * state[name] for name in self.states())

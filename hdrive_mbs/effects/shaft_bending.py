@@ -1,0 +1,62 @@
+"""What effects on a piece of shaft look at: its bending moment at a point, and the shapes into which it bends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.network.bearing_draft import ShaftPiece
+
+FloatArray = npt.NDArray[np.float64]
+
+_X, _Y = (0, 4, 6, 10), (1, 3, 7, 9)
+"""Places of displacement and tilt at both ends in the 12-vector, in the plane (x, theta) and in the plane (y, -psi)."""
+_SIGNS = np.array([1.0, -1.0, 1.0, -1.0])
+
+
+def _rows(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The same function of displacements and slopes in both planes, as rows over the 12-vector."""
+    x, y = np.zeros(12), np.zeros(12)
+    x[list(_X)], y[list(_Y)] = values, _SIGNS * values
+    return x, y
+
+
+@dataclass(frozen=True)
+class BendingShape:
+    """One quantity of the bending of a piece, alike in both planes.
+
+    stretches : "x" and "y" -> factors of coordinates that make it, the largest of them about 1
+    size : what it has to be multiplied by
+    """
+
+    stretches: dict[str, dict[str, float]]
+    size: float
+
+
+def _shape(piece: ShaftPiece, values: FloatArray) -> BendingShape:
+    size = float(np.max(np.abs(values)))
+    return BendingShape({key: piece.stretch(row) for key, row in zip("xy", _rows(values / size), strict=True)}, size)
+
+
+def moment_at(piece: ShaftPiece, share: float) -> tuple[BendingShape, float]:
+    """Bending moment [N m] at a share of the length from end a, positive when the piece curves towards +x (+y), from the
+    displacements of its ends; and the moment per kink [N m/rad] there with both ends held.
+
+    M = -M_a + z F_a with the forces F_a, M_a that hold end a; a kink of angle d there has the ends pull with -d dM/dq (the
+    reciprocal theorem of Betti), so that it is met by h = z dM/dx_a - dM/dtheta_a.
+    """
+    plane = piece.bending[np.ix_(_X, _X)]
+    values = share * piece.length * plane[0] - plane[1]
+    return _shape(piece, values), float(share * piece.length * values[0] - values[1])
+
+
+def bent_shapes(piece: ShaftPiece) -> list[tuple[BendingShape, float]]:
+    """Two shapes s_k into which a piece bends, with stiffness: energy = sum(stiffness s_k^2)/2 in each plane."""
+    stiffness, vectors = np.linalg.eigh(piece.bending[np.ix_(_X, _X)])
+    found = []
+    for value, vector in list(zip(stiffness, vectors.T, strict=True))[2:]:  # two more move it as a rigid body
+        shape = _shape(piece, vector)
+        found.append((shape, float(value) * shape.size**2))
+    return found

@@ -1,0 +1,132 @@
+"""What turns in a network while it is being built: connections, torques, states and prescribed motions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from hdrive_mbs.errors import LawError, PlaceError
+from hdrive_mbs.expression import TraceError, Value, gradient
+from hdrive_mbs.network.connection_draft import ConnectionDraft, Torque
+from hdrive_mbs.network.draft_channels import DraftChannels
+from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, StateRate
+from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.network import State
+from hdrive_mbs.network.node import Node
+
+
+class DraftTorsion(DraftChannels):
+    """Connections, torques, states and prescribed motions."""
+
+    def __init__(self, nodes: dict[str, Node], flanges: dict[str, str]) -> None:
+        super().__init__(nodes, flanges)
+        self._motions: dict[str, Callable[[Value], Value]] = {}
+        self._states: dict[str, State] = {}
+        self._finished: tuple[Element, ...] = ()
+
+    def add_connection(
+        self, name: str, factors: dict[str, float], law: Torque, *, aliases: tuple[str, ...] = (), bodies: dict[str, str] | None = None
+    ) -> ConnectionDraft:
+        """A torsional element along  x = sum(f_i q_i); channels twist, twist_rate and torque."""
+        merged: dict[str, float] = {}
+        for coordinate, factor in factors.items():
+            merged[coordinate] = merged.get(coordinate, 0.0) + factor
+        draft = ConnectionDraft(name, merged, law, bodies=dict(bodies or {}))
+        self._connections[name] = draft
+        self._aliases |= dict.fromkeys(aliases, name)
+        return draft
+
+    def add_torque(
+        self,
+        name: str,
+        coordinate: str,
+        torque: Callable[[Moment], Value],
+        *,
+        dissipative: bool = False,
+        stored: Callable[[Moment], Value] | None = None,
+        is_motor: bool = False,
+    ) -> None:
+        """A torque on a coordinate, positive in its forward sense.
+
+        stored : energy in its states
+        is_motor : it is that of the motor ``<motor>`` and called ``<motor>.torque``; effects may change what reaches the rotor
+        """
+        self._elements.append(AppliedTorque(name, coordinate, torque, dissipative, stored, is_motor))
+
+    def add_inertia(self, place: str, inertia: float, asked_by: str = "This") -> None:
+        """More inertia [kg m^2] at a place, or less.  Raises PlaceError where it leaves none, or where the place moves across the axis."""
+        node = self.body(place, asked_by)
+        if node.lateral or not node.inertia + inertia > 0.0:
+            known = [path for path, name in self._flanges.items() if not self._nodes[name].lateral and self._nodes[name].inertia > -inertia]
+            raise PlaceError(
+                f"{asked_by} changes the inertia of {place!r} by {inertia:g} kg m^2, which has {node.inertia:g} kg m^2 "
+                f"that only turn. Places where it can be done: {', '.join(known) or 'none'}."
+            )
+        self._nodes[node.name] = replace(node, inertia=node.inertia + inertia)
+
+    def add_relative_torque(self, name: str, factors: dict[str, float], torque: Torque, *, dissipative: bool = False) -> None:
+        """A torque(moment, x, dx/dt) that resists along  x = sum(f_i q_i), with its reactions; no twist channels."""
+        self._elements.append(Connection(name, dict(factors), torque, (), dissipative))
+
+    def motor_torque(self, place: str, asked_by: str = "This") -> Callable[[Moment], Value]:
+        """The torque ``<place>.torque`` that a part puts on its body.
+
+        Raises PlaceError when there is none (a motor with a prescribed motion has none).
+        """
+        torques = {element.name: element.torque for element in self._elements if isinstance(element, AppliedTorque)}
+        if f"{place}.torque" in torques:
+            return torques[f"{place}.torque"]
+        known = [name.removesuffix(".torque") for name in torques if name.endswith(".torque")]
+        raise PlaceError(f"{asked_by} needs a part with a torque law, but {place!r} has none. Such parts: {', '.join(known) or 'none'}.")
+
+    def change_motor(
+        self, place: str, change: Callable[[Callable[[Moment], Value]], Callable[[Moment], Value]], asked_by: str = "This"
+    ) -> Callable[[Moment], Value]:
+        """Let ``change(torque)`` reach the rotor of a motor in place of its torque; returns it.
+
+        The channel ``<place>.torque`` stays what the characteristic gives.  Raises PlaceError where no motor with a torque law is.
+        """
+        self.body(place, asked_by)
+        for k, element in enumerate(self._elements):
+            if isinstance(element, AppliedTorque) and element.is_motor and element.name == f"{place}.torque":
+                changed = replace(element, torque=change(element.torque))
+                self._elements[k] = changed
+                return changed.torque
+        motors = [item.name.removesuffix(".torque") for item in self._elements if isinstance(item, AppliedTorque) and item.is_motor]
+        raise PlaceError(f"{asked_by} needs a motor with a torque law, but {place!r} is none. Motors: {', '.join(motors) or 'none'}.")
+
+    def add_state(self, name: str, *, unit: str, initial: float, rate: Callable[[Moment], Value]) -> str:
+        """A first-order state dz/dt = rate(moment); returns its (unique) name."""
+        unique, number = name, 2
+        while unique in self._states:
+            unique, number = f"{name}_{number}", number + 1
+        self._states[unique] = State(unique, unit, initial)
+        self._elements.append(StateRate(unique, rate))
+        self.add_channel(unique, unit, f"state {unique}", lambda moment: moment.state(unique))
+        return unique
+
+    def prescribe(self, coordinate: str, angle: Callable[[Value], Value]) -> None:
+        """Make the forward angle of a coordinate a function of time.
+
+        Raises LawError where the angle cannot be differentiated.
+        """
+        try:
+            gradient(gradient(angle))
+        except TraceError as error:
+            raise LawError(f"The motion of {coordinate!r} must be written with numpy functions, to be differentiated: {error}.") from None
+        self._motions[coordinate] = angle
+
+    def holding_torque(self, node: Node) -> Callable[[Moment], Value]:
+        """Torque [N m] that keeps a prescribed place on its motion:  J d2(angle)/dt2 - sum of the torques on it.
+
+        Leaves out what the unbalance of a whirling rotor asks for, m e times its lateral acceleration.
+        """
+
+        def read(moment: Moment) -> Value:
+            acceleration = gradient(gradient(self._motions[node.name]))(moment.time)
+            total: Value = (node.inertia + node.mass.polar) * acceleration + 0.0 * moment.time
+            for element in self._finished:
+                total = total - element.contribution(moment).get(node.name, 0.0)
+            return total
+
+        return read

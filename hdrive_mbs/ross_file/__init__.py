@@ -1,0 +1,1 @@
+"""Rotors saved by ROSS (ross-rotordynamics) as scenes; ROSS itself is not needed."""

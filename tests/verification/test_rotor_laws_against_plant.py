@@ -1,0 +1,117 @@
+"""Changed laws of the rotor bench against the plant of the withheld cases, whose equations, laws and integrator are its own.
+
+The record is the one with two blows of a hammer at standstill; differences are in units of the probes' noise.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import hdrive_mbs as hm
+from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
+from hdrive_mbs.effects.effect import Effect
+from models import rotor_bench
+
+pytest.importorskip("llvmlite", reason='compiled runs need the extra "diagnosis"')
+pytest.importorskip("numba", reason="the plant of the withheld cases needs numba")
+
+from benchmarks.withheld.plant.rotor_line.machine import NOMINAL
+from benchmarks.withheld.plant.rotor_line.planted import Planted
+from benchmarks.withheld.plant.rotor_line.records import PROBES
+from hdrive_mbs.compiled.line import CompiledLine
+
+NOISE = 2.5e-7
+CHANNELS = {"r1_x": "rotor_1.x", "r1_y": "rotor_1.y", "r2_x": "rotor_2.x", "r2_y": "rotor_2.y"}
+STIFFNESS, LOAD, PENETRATION = 6.5e7, 800.0, 10.0 / 9.0 * 800.0 / 6.5e7
+"""Of a bearing [N/m]; a load and the approach of a roller contact that has this stiffness there."""
+CRACK = {"compliance": 3e-7, "cross_share": 1.0 / 3.0, "position": 0.8}
+
+CASES: dict[str, tuple[str, int, tuple[float, ...], Effect, str]] = {
+    # field of the plant's causes, first place in it, values; effect, place
+    "gap": ("bearing", 0, (1, 5e-6, 0.02, 0.3), hm.BearingClearance(gap=5e-6, film_stiffness=0.02, film_damping=0.3), "bearing_1"),
+    "gap with rollers": (
+        "bearing",
+        0,
+        (2, 5e-6, 0.0, 0.3, LOAD / PENETRATION ** (10.0 / 9.0), 0.7 * 2500.0 / LOAD),
+        hm.HertzianClearance(gap=5e-6, film_damping=0.3, reference_force=LOAD),
+        "bearing_1",
+    ),
+    "cubic": ("bearing", 6, (3, 2e-5), hm.BearingCubicStiffness(stiffness=STIFFNESS / 4e-10), "bearing_2"),
+    "cubic by axis": ("bearing", 6, (4, 2e-5), hm.BearingCubicStiffness(stiffness=STIFFNESS / 4e-10, by_axis=True), "bearing_2"),
+    "sinh": ("bearing", 6, (5, 2e-5), hm.BearingHardening(rate=5e4), "bearing_2"),
+    "cross": ("cross", 0, (1, 5e6, 0.2, 1e-4), hm.BearingCrossCoupling(stiffness=5e6, asymmetry=0.2, fading=1e8), "bearing_1"),
+    "lifts": ("support", 0, (1, -8e-6, 0.0, 0.5), hm.Looseness(share=0.5, lift_off=-8e-6), "bearing_1"),
+    "lifts to the bolt": ("support", 0, (3, -8e-6, -2e-6, 0.5), hm.Looseness(share=0.5, lift_off=-8e-6, play=6e-6), "bearing_1"),
+    "sideways": ("support", 0, (2, 0.0, 2e-6, 0.5), hm.LooseFit(share=0.5, half_play=2e-6), "bearing_1"),
+    "hidden": (
+        "hidden",
+        0,
+        (1, 0, 2.0, 2.0 * 400.0**2, 2.0 * 500.0**2, 2.0 * 0.02 * 2.0 * 400.0, 0.4),
+        hm.HiddenModeSupport(mass=2.0, natural_frequency=400.0, ratio=1.25, damping_ratio=0.02, angle=0.4),
+        "bearing_1",
+    ),
+    # the plant counts the angle to the side that is pressed when the crack is shut
+    "crack by weight": (
+        "crack",
+        0,
+        (2, 0, 0.8, 3e-7, 1e-7, 0.3, 2.0),
+        hm.BreathingCrack(**CRACK, angle=0.3 - math.pi, steepness=2.0),
+        "section_1",
+    ),
+    "crack by moment": (
+        "crack",
+        0,
+        (1, 0, 0.8, 3e-7, 1e-7, 0.3, 20.0),
+        hm.MomentCrack(**CRACK, angle=0.3 - math.pi, closing_moment=20.0),
+        "section_1",
+    ),
+    "rub": (
+        "rub",
+        0,
+        (1, 1.2e-4, -2e-6, -1.8e-5, 3e6, 200.0, 0.1, 0.05, 0.06, 0.0, 1),
+        hm.Rub(gap=1.2e-4, centre_x=-2e-6, centre_y=-1.8e-5, stiffness=3e6, damping=200.0, friction=0.1, radius=0.06),
+        "rotor_1",
+    ),
+}
+
+
+def measured(plant: Callable[[Planted], None], scene: hm.Scene) -> float:
+    """Largest rms difference of a probe between plant and scene, over its noise."""
+    bench = Planted(values=dict(NOMINAL))
+    plant(bench)
+    run = bench.runs(("bump",))["bump"]
+    scene = scene.replacing({"gravity.y": -bench.machine().gravity})
+    rest = rotor_point(scene.replacing({"drive.characteristic": rotor_bench.NO_TORQUE}), 0.0).angles
+    ours = CompiledLine(scene.network(), list(CHANNELS.values())).run(
+        len(run.time), rotor_bench.SAMPLE_TIME, step=rotor_bench.SAMPLE_TIME / 16.0, angles=rest
+    )
+    away = [ours.values[CHANNELS[name]] - run.states[:, column] for name, column in PROBES.items()]
+    return max(float(np.sqrt(np.mean(difference**2))) for difference in away) / NOISE
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_effect_moves_the_bench_as_the_plant_does(case: str) -> None:
+    field, first, values, effect, at = CASES[case]
+
+    def put(bench: Planted) -> None:
+        getattr(bench.causes, field).flat[first : first + len(values)] = values
+
+    bare = rotor_bench.build("bump")
+    assert measured(put, bare) > 3.0  # it is there
+    # what two integrators leave at corners, 0.02 here; the smooth laws agree to 0.002
+    assert measured(put, bare.with_effect(effect, at=at)) < 0.05
+
+
+def test_internal_damping_moves_the_bench_as_the_plant_does() -> None:
+    """At standstill it is damping alone; the spin is in tests of the threshold."""
+
+    def put(bench: Planted) -> None:
+        bench.causes.internal[:2] = 1, 1e-5
+
+    bare = rotor_bench.build("bump")
+    assert measured(put, bare) > 3.0
+    assert measured(put, bare.with_effect(hm.InternalDamping(time=1e-5), at="section_1")) < 0.005
