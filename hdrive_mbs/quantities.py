@@ -232,16 +232,26 @@ class Described:
 
     def setting(self, path: str, value: Any) -> Self:
         """A copy with the field at a dotted path changed."""
-        head, _, rest = path.partition(".")
+        return self.setting_all({path: value})
+
+    def setting_all(self, changes: Mapping[str, Any]) -> Self:
+        """A copy with the fields at dotted paths changed together: values that only go with each other can be set."""
         known = [field.name for field in dataclasses.fields(self)]
-        if head not in known:
-            raise unknown_place("parameter", head, known, type(self).__name__)
-        if not rest:
-            return dataclasses.replace(self, **{head: value})
-        inner = getattr(self, head)
-        if not isinstance(inner, Described):
-            raise unknown_place("parameter", path, known, type(self).__name__)
-        return dataclasses.replace(self, **{head: inner.setting(rest, value)})
+        own: dict[str, Any] = {}
+        inner: dict[str, dict[str, Any]] = {}
+        for path, value in changes.items():
+            head, _, rest = path.partition(".")
+            if head not in known:
+                raise unknown_place("parameter", head, known, type(self).__name__)
+            if not rest:
+                own[head] = value
+            elif isinstance(own.get(head, getattr(self, head)), Described):
+                inner.setdefault(head, {})[rest] = value
+            else:
+                raise unknown_place("parameter", path, known, type(self).__name__)
+        for head, parts in inner.items():
+            own[head] = own.get(head, getattr(self, head)).setting_all(parts)
+        return dataclasses.replace(self, **own)
 
     def describe(self) -> str:
         """One readable line: the type and its fields with units."""

@@ -131,19 +131,33 @@ class Scene:
         """
         changed: dict[str, Component] = dict(self.parts)
         effects = {placed.name: placed for placed in self.effects}
+        inside: dict[str, dict[str, Any]] = {}
         for path, value in {**(changes or {}), **parts}.items():
             head, _, rest = path.partition(".")
+            if head not in changed and head not in effects:
+                raise self._unknown_path(path, unknown_place("part or effect", head, [*changed, *effects]))
+            if rest:
+                inside.setdefault(head, {})[rest] = value
+            elif head in changed:
+                changed[head] = value
+            else:
+                effects[head] = replace(effects[head], effect=value)
+        for head, fields in inside.items():
             try:
                 if head in changed:
-                    changed[head] = changed[head].setting(rest, value) if rest else value
+                    changed[head] = changed[head].setting_all(fields)
                 else:
-                    placed = effects.get(head) or self.effect(head)
-                    effects[head] = replace(placed, effect=placed.effect.setting(rest, value) if rest else value)
+                    effects[head] = replace(effects[head], effect=effects[head].effect.setting_all(fields))
             except PlaceError as error:
-                near = difflib.get_close_matches(path, list(self.parameters()), n=1)
-                hint = f" Did you mean {near[0]!r}?" if near else ""
-                raise PlaceError(f"{path!r}: {error}{hint}") from None
+                known = self.parameters()
+                path = next((f"{head}.{rest}" for rest in fields if f"{head}.{rest}" not in known), f"{head}.{next(iter(fields))}")
+                raise self._unknown_path(path, error) from None
         return replace(self, parts=changed, effects=tuple(effects.values()))
+
+    def _unknown_path(self, path: str, error: PlaceError) -> PlaceError:
+        near = difflib.get_close_matches(path, list(self.parameters()), n=1)
+        hint = f" Did you mean {near[0]!r}?" if near else ""
+        return PlaceError(f"{path!r}: {error}{hint}")
 
     # -- questions -------------------------------------------------------------------------------
     def effect(self, name: str) -> PlacedEffect:

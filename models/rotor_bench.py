@@ -8,6 +8,8 @@ torque, an encoder at the drive end, probes at both rotors and accelerometers on
     scene = rotor_bench.build("run_up")
     response = hm.simulate(scene, 4.2, solver=rotor_bench.SOLVER, **rotor_bench.start("run_up"))
 
+``bench()`` is what a diagnosis needs to know of it.
+
 With ``spin=(times, angles)`` the drive end follows its measured angle in place of its controller: what is wrong in drag
 and inertia then does not add up in the phase of the unbalance.  The data sheet has no axial motion; here bearing 1
 locates the shaft, and nothing excites it.
@@ -29,7 +31,15 @@ from scipy.linalg import expm
 import hdrive_mbs as hm
 from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
+from hdrive_mbs.diagnosis.bench import Bench, Uncertain, even_step, held_out
+from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.trial import Trial
+from hdrive_mbs.errors import RecordError
 from hdrive_mbs.expression import Value
+from hdrive_mbs.network.draft import Draft
+from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.node import Node
+from hdrive_mbs.records.record import Record
 from hdrive_mbs.tables import EDGE
 
 FloatArray = npt.NDArray[np.float64]
@@ -85,6 +95,19 @@ KNOWLEDGE: dict[str, float] = {
     "rotor_2_eccentricity": 0.05,
 }
 """Standard deviation of the logarithm of each parameter that is not exact, independent of each other."""
+
+GROUPS: dict[str, tuple[str, ...]] = {
+    "bearing_stiffness": ("bearing_stiffness",),
+    "bearing_damping": ("bearing_damping",),
+    "support_stiffness": ("support_stiffness_x", "support_stiffness_y"),
+    "support_damping": ("support_damping",),
+    "shaft_stiffness": ("youngs_modulus",),
+    "shaft_damping": ("shaft_damping",),
+    **{f"rotor_{k}_mass": tuple(f"rotor_{k}_{what}" for what in ("mass", "polar_inertia", "transverse_inertia")) for k in (1, 2)},
+    **{f"rotor_{k}_eccentricity": (f"rotor_{k}_eccentricity",) for k in (1, 2)},
+}
+"""Parameters that are wrong together, if they are wrong: of both bearings or supports, of a rotor.  What is wrong at one bearing
+or support alone is an effect there (BearingStiffnessChange, SupportStiffnessChange, ...)."""
 
 PATHS: dict[str, tuple[str, ...]] = {
     "youngs_modulus": tuple(f"{name}.youngs_modulus" for name in SECTIONS),
@@ -170,21 +193,44 @@ NO_TORQUE = hm.TorqueHistory(times=(0.0, 1.0), torques=(0.0, 0.0))
 
 @dataclass(frozen=True, kw_only=True)
 class HeldSpeedControl(hm.MotorCharacteristic):
-    """A sampled speed controller as a law of continuous time:  M = clip(k (r(t) - w), -M_max, M_max).
+    """A sampled speed controller as a law of continuous time:  M = clip(k (e(t) - z), -M_max, M_max),  z' = (w - v(t) - z)/T.
 
-    The controller holds M_k = k (ref_k - w_k) for a sample.  With the speed v(t) of the line under exactly this control,
-    worked out before, the same torque is k (r(t) - v(t)) with  r(t) = ref_k + v(t) - v_k  in sample k; here r is a line
-    in each sample, which keeps the impulse of the torque.  So where the line turns like v the law is right, and only a
-    deviation w - v is fed back without the half sample of delay that it has in truth.
+    The controller holds M_k = clip(k (ref_k - w_k)) for a sample.  The speed v(t) of the nominal line under exactly this
+    control is worked out before, and e(t) = ref_k - v_k in sample k.  A deviation w - v is fed back with the lag
+    T of half a sample, which is what sampling and holding delay it by on average; v is a line in each sample that has
+    the right mean.  So where the line turns like v the law is right.  Leaves out the saw teeth of a held deviation.
     """
 
     gain: float = hm.parameter("N m s/rad", "k, torque per speed error", above=0.0)
     torque_limit: float = hm.parameter("N m", "largest torque M_max", above=0.0)
-    times: tuple[float, ...] = hm.table("s", "times of the corrected reference, rising")
-    references: tuple[float, ...] = hm.table("rad/s", "corrected reference r at these times")
+    lag: float = hm.parameter("s", "T, half a sample", above=0.0)
+    times: tuple[float, ...] = hm.table("s", "times of the worked-out errors and speeds, rising")
+    errors: tuple[float, ...] = hm.table("rad/s", "worked-out speed error e at these times")
+    speeds: tuple[float, ...] = hm.table("rad/s", "worked-out speed v at these times")
+    asked_times: tuple[float, ...] = hm.table("s", "times of the reference, rising")
+    asked_speeds: tuple[float, ...] = hm.table("rad/s", "reference at these times")
 
     def torque(self, time: Value, speed: Value) -> Value:
-        return np.clip(self.gain * (np.interp(time, self.times, self.references) - speed), -self.torque_limit, self.torque_limit)
+        """Without the lag."""
+        return self._limited(np.interp(time, self.times, self.errors) + np.interp(time, self.times, self.speeds) - speed)
+
+    def _limited(self, error: Value) -> Value:
+        return np.clip(self.gain * error, -self.torque_limit, self.torque_limit)
+
+    def drive(self, name: str, node: Node, draft: Draft) -> None:
+        def rate(moment: Moment) -> Value:
+            return (moment.speed(node.name) - np.interp(moment.time, self.times, self.speeds) - moment.state(state)) / self.lag
+
+        def torque(moment: Moment) -> Value:
+            return self._limited(np.interp(moment.time, self.times, self.errors) - moment.state(state))
+
+        def command(moment: Moment) -> Value:
+            return self._limited(np.interp(moment.time, self.asked_times, self.asked_speeds) - moment.speed(node.name))
+
+        state = draft.add_state(f"{name}.deviation", unit="rad/s", initial=0.0, rate=rate)
+        draft.add_torque(f"{name}.torque", node.name, torque, is_motor=True)
+        draft.add_channel(f"{name}.torque", "N m", f"torque of {name}", torque)
+        draft.add_channel(f"{name}.command", "N m", f"at a sample: the torque that {name} takes up there and holds", command)
 
 
 def build(
@@ -252,6 +298,7 @@ def undriven(record: str, *, hammer: Mapping[str, Sequence[float]] | None = None
         )
         chain += [section, right]
     parts |= {"drive": hm.DriveTorque(characteristic=NO_TORQUE), "gravity": hm.Gravity()}
+    parts |= {f"probe_r{k}_{d}": hm.Sensor(quantity=f"rotor_{k}.{d}") for k in (1, 2) for d in "xy"}
     connections = [tuple(chain)]
     if blows:
         times = SAMPLE_TIME * np.arange(max(map(len, blows.values())))
@@ -330,14 +377,25 @@ def held_control(record: str, free: hm.Scene) -> tuple[FloatArray, FloatArray, F
 
 
 def _controller(record: str, free: hm.Scene) -> HeldSpeedControl:
-    """The controller, with its reference corrected for sampling and holding; a change is a steep line centred on its sample."""
+    """The controller with what the line does under it; a change is a steep line centred on its sample."""
     angles, speeds, _ = held_control(record, free)
     times = sample_times(record)
-    mean = np.interp(times, *REFERENCES[record]) - speeds[:-1] + np.diff(angles) / SAMPLE_TIME
+    mean, error = np.diff(angles) / SAMPLE_TIME, np.interp(times, *REFERENCES[record]) - speeds[:-1]
     half, rise = 0.5 * EDGE * SAMPLE_TIME, 0.5 * np.diff(speeds)
-    points = np.column_stack((times + half, times + SAMPLE_TIME - half)).ravel()
-    values = np.column_stack((mean - rise, mean + rise)).ravel()
-    return HeldSpeedControl(gain=GAIN, torque_limit=TORQUE_LIMIT, times=tuple(points), references=tuple(values))
+
+    def twice(first: FloatArray, second: FloatArray) -> tuple[float, ...]:
+        return tuple(np.column_stack((first, second)).ravel().tolist())
+
+    return HeldSpeedControl(
+        gain=GAIN,
+        torque_limit=TORQUE_LIMIT,
+        lag=0.5 * SAMPLE_TIME,
+        times=twice(times + half, times + SAMPLE_TIME - half),
+        errors=twice(error, error),
+        speeds=twice(mean - rise, mean + rise),
+        asked_times=REFERENCES[record][0],
+        asked_speeds=REFERENCES[record][1],
+    )
 
 
 def _measured_spin(record: str, free: hm.Scene, times: Sequence[float], angles: Sequence[float]) -> hm.IdealSpeedMotor:
@@ -353,8 +411,106 @@ def _measured_spin(record: str, free: hm.Scene, times: Sequence[float], angles: 
     weights = np.where(at == 0.0, 1e3, 1.0)  # the angle is zero at t = 0
     knots = np.linspace(at[0], at[-1], max(2, round((at[-1] - at[0]) / KNOT_TIME) + 1))
     smooth = make_lsq_spline(at, rest, np.concatenate(([knots[0]] * 3, knots, [knots[-1]] * 3)), k=3, w=weights)
-    return hm.IdealSpeedMotor(motion=hm.AngleTable(times=tuple(own), angles=tuple(turned + smooth(np.clip(own, at[0], at[-1])))))
+    found = turned + smooth(np.clip(own, at[0], at[-1]))
+    return hm.IdealSpeedMotor(motion=hm.AngleTable(times=tuple(own), angles=tuple(found - found[0])))
 
 
 SOLVER = hm.RungeKutta4(step=SAMPLE_TIME / 6.0)
 """Meets every sample; stable to SAMPLE_TIME/4.8, for the axial vibration of the ring between its short sections."""
+
+
+# -- what a diagnosis knows ----------------------------------------------------------------------------
+
+PROBES, ACCELEROMETERS = OFFSET_FREE, ("h1_ax", "h1_ay", "h2_ax", "h2_ay")
+LATERAL, TORSION = (*PROBES, *ACCELEROMETERS), ("motor_torque", "spin_angle")
+"""Columns that are compared while the drive end follows its measured angle, and under its controller."""
+
+STEP = 1.0 / 12000.0
+"""Longest step of the compiled integration [s] for the bench without effects: stable to 1/10600 s."""
+
+NAMES: dict[tuple[str, str], tuple[str, str]] = {
+    **{("probe_runout", f"rotor_{k}"): ("probe_runout", f"probe_rotor_{k}") for k in (1, 2)},
+    **{("support_stiffness", f"bearing_{k}"): ("parameter_support_stiffness", f"support_{k}") for k in (1, 2)},
+    **{(f"bearing_{what}", f"bearing_{k}"): (f"parameter_bearing_{what}", f"bearing_{k}") for k in (1, 2) for what in ("stiffness", "damping")},
+    **{(family, f"bearing_{k}"): (family, f"support_{k}") for k in (1, 2) for family in ("hidden_mode_support", "looseness")},
+    **{("crack", section): ("crack", "shaft") for section in SECTIONS},
+    ("misalignment", "bearing_1"): ("misalignment", "drive_end"),
+    ("torque_ripple", "drive"): ("torque_ripple", "drive_end"),
+    ("parameter", "bearing_stiffness"): ("parameter_bearing_stiffness", "bearings"),
+    ("parameter", "bearing_damping"): ("parameter_bearing_damping", "bearings"),
+    ("parameter", "shaft_stiffness"): ("parameter_shaft_stiffness", "shaft"),
+    **{("parameter", f"rotor_{k}_mass"): ("parameter_rotor_mass", f"rotor_{k}") for k in (1, 2)},
+    **{("parameter", f"rotor_{k}_eccentricity"): ("unbalance", f"rotor_{k}") for k in (1, 2)},
+}
+"""(family, place of the scene) -> (effect, place) as the bench's people call them, where they differ."""
+
+
+STILL = hm.AngleTable(times=(0.0, 1.0), angles=(0.0, 0.0))
+
+
+def _hammer(record: str) -> hm.LateralForce:
+    """The hammer of a record; in most it does next to nothing, so that all records share their equations."""
+    blows = _blows(record) or {"x": np.zeros(2), "y": np.full(2, 1e-30)}  # two tables, like those of two blows
+    times = SAMPLE_TIME * np.arange(len(blows["x"]))
+    return hm.LateralForce(times=tuple(times), held=True, forces_x=tuple(blows["x"]), forces_y=tuple(blows["y"]))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RotorBench(Bench):
+    """The bench with two views of each record that share all parameters.
+
+    lateral : the drive end follows its measured angle; probes and accelerometers are compared
+    torsion : under the controller; held torque and encoder are compared (not at standstill)
+    """
+
+    def trials(self, record: Record) -> tuple[Trial, ...]:
+        """Raises RecordError for a record that is none of the bench's, or lacks its columns."""
+        if record.name not in REFERENCES:
+            raise RecordError(f"Record {record.name!r} is none of the rotor bench: {', '.join(REFERENCES)}.")
+        columns = self.columns_of(record)
+        moving = record.name != "bump"
+        if moving and "spin_angle" not in columns:
+            raise RecordError(f"Record {record.name!r} has no column 'spin_angle', which drives the scene.")
+        free = undriven(record.name)
+        spin: hm.SpeedProfile = STILL
+        if moving:
+            follower = _measured_spin(record.name, free, record.times - record.times[0], columns["spin_angle"])
+            assert isinstance(follower.motion, hm.SpeedProfile)
+            spin = follower.motion
+        scene = self.scene.replacing({"drive.characteristic": _controller(record.name, free), "hammer": _hammer(record.name)})
+        found = []
+        for view, wanted in (("lateral", LATERAL), ("torsion", TORSION if moving else ())):
+            here = [name for name in wanted if name in columns]
+            if here:
+                found.append(
+                    Trial(
+                        name=f"{record.name}, {view}",
+                        scene=scene,
+                        every=even_step(record),
+                        columns={name: columns[name] for name in here},
+                        measured={name: self.measured[name] for name in here},
+                        held_out=held_out(len(record), record.name),
+                        speeds=dict.fromkeys(POSITIONS, REFERENCES[record.name][1][0]),
+                        settled=True,
+                        motions={"bearing_1": spin.angle} if view == "lateral" else {},
+                    )
+                )
+        return tuple(found)
+
+
+def bench() -> RotorBench:
+    """The bench as its builder knows it, for a diagnosis."""
+    channels = {**CHANNELS, "motor_torque": "drive.command", **{name: f"probe_{name}" for name in PROBES}}
+    return RotorBench(
+        scene=build("run_up", hammer=dict.fromkeys("xy", (0.0, 0.0))),
+        knowledge={name: Uncertain(paths=PATHS[name], sigma=sigma) for name, sigma in KNOWLEDGE.items()},
+        measured={
+            name: Measured(
+                channel=channels[name],
+                noise=NOISE[name],
+                resolution=RESOLUTION[name],
+                offset=math.inf if name in OFFSET_FREE else 0.0,
+            )
+            for name in (*LATERAL, *TORSION)
+        },
+    )

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from hdrive_mbs import __version__
-from hdrive_mbs.cli import animate, bench, campbell, demo, effects, modes, run, run_up, sweep, teeth, torsion, unbalance
+from hdrive_mbs.cli import animate, bench, campbell, demo, diagnose, effects, modes, run, run_up, sweep, teeth, torsion, unbalance
 from hdrive_mbs.errors import HdriveError
 
 app = typer.Typer(
@@ -41,6 +41,7 @@ app.command()(campbell.campbell)
 app.command()(run_up.run_up)
 app.command()(animate.animate)
 app.command()(sweep.sweep)
+app.command()(diagnose.diagnose)
 
 
 def main() -> None:

@@ -18,6 +18,53 @@ BLOCK = 500_000
 """Half steps whose inputs are held at a time."""
 
 
+class Lanes:
+    """Programs of one structure side by side, ready to run.
+
+    programs : of one structure, at most ``width``; the last one fills lanes that are left
+    """
+
+    def __init__(self, programs: Sequence[Program], width: int) -> None:
+        filled = [*programs, *[programs[-1]] * (width - len(programs))]
+        self.width, self.structure = width, programs[0].structure
+        self.shared = all(program.inputs == programs[0].inputs for program in programs[1:])
+        self._sources = [programs[0]] * width if self.shared else filled
+        self._constants = side_by_side([program.constants for program in filled])
+        self._tables = _tables(filled)
+        self._grid: Grid | None = None
+        self._run = machine(self.structure, width, shared=self.shared or width == 1).run
+
+    def state(self, initial: FloatArray) -> FloatArray:
+        """Memory for the states of all lanes from those of the programs, shape (programs, states)."""
+        return side_by_side([*initial, *[initial[-1]] * (self.width - len(initial))])
+
+    def run(self, state: FloatArray, grid: Grid, out: FloatArray, good: npt.NDArray[np.int64], *, last: bool) -> None:
+        """Move the states through the samples of a grid, and past the last one unless it is the last of all.
+
+        out : readings, shape (readings, width, samples), of which those of the grid are written
+        good : for each lane the number of finite samples, counted on
+        """
+        addresses = self._addresses(grid)
+        self._run(
+            state.ctypes.data, grid.every / grid.inner, grid.inner, grid.samples, int(last), self._constants.ctypes.data,
+            self._tables.ctypes.data, addresses.ctypes.data, good.ctypes.data, out.ctypes.data + 8 * grid.first, out.shape[2],
+        )  # fmt: skip
+
+    def _addresses(self, grid: Grid) -> npt.NDArray[np.int64]:
+        """Where the inputs at the times of a grid lie."""
+        if grid != self._grid:
+            columns = [[program.inputs[k].column(grid) for program in self._sources] for k in range(self.structure.inputs)]
+            self._grid, self._kept = grid, columns
+            self._at = np.array([[column.ctypes.data for column in row] for row in columns], np.int64)
+        return self._at
+
+    def counted(self) -> npt.NDArray[np.int64]:
+        """Memory for the number of finite samples of each lane, none yet."""
+        good = _aligned(self.width, np.int64)
+        good[:] = 0
+        return good
+
+
 def run_lanes(
     programs: Sequence[Program], width: int, initial: FloatArray, samples: int, every: float, inner: int, start: float
 ) -> tuple[FloatArray, npt.NDArray[np.int64]]:
@@ -26,29 +73,13 @@ def run_lanes(
     programs : of one structure, at most ``width``; the last one fills lanes that are left
     initial : states at the start, shape (programs, states)
     """
-    structure = programs[0].structure
-    lanes = [*range(len(programs)), *[len(programs) - 1] * (width - len(programs))]
-    state = _side_by_side([initial[lane] for lane in lanes])
-    constants = _side_by_side([programs[lane].constants for lane in lanes])
-    tables = _tables([programs[lane] for lane in lanes])
-    shared = all(program.inputs == programs[0].inputs for program in programs[1:])
-    run = machine(structure, width, shared=shared or width == 1).run
-    out = np.empty((len(structure.readings), width, samples))
-    good = _aligned(width, np.int64)
-    good[:] = 0
+    lanes = Lanes(programs, width)
+    state, good = lanes.state(initial), lanes.counted()
+    out = np.empty((len(lanes.structure.readings), width, samples))
     block = max(1, BLOCK // (2 * inner))
     for first in range(0, samples, block):
         rows = min(block, samples - first)
-        grid = Grid(start, every, inner, first, rows)
-        sources = [programs[lanes[0]]] * width if shared else [programs[lane] for lane in lanes]
-        columns = [[program.inputs[k].column(grid) for program in sources] for k in range(structure.inputs)]
-        addresses = np.array([[column.ctypes.data for column in row] for row in columns], np.int64)
-        at = out.ctypes.data + 8 * first
-        last = int(first + rows == samples)
-        run(
-            state.ctypes.data, every / inner, inner, rows, last,
-            constants.ctypes.data, tables.ctypes.data, addresses.ctypes.data, good.ctypes.data, at, samples,
-        )  # fmt: skip
+        lanes.run(state, Grid(start, every, inner, first, rows), out, good, last=first + rows == samples)
         if np.max(good) < first + rows:
             break
     return out, good
@@ -61,7 +92,7 @@ def _aligned(count: int, kind: type = np.float64) -> npt.NDArray[Any]:
     return whole[first : first + 8 * count].view(kind)
 
 
-def _side_by_side(rows: Sequence[FloatArray]) -> FloatArray:
+def side_by_side(rows: Sequence[FloatArray]) -> FloatArray:
     """Number 0 of every lane, number 1 of every lane, ..."""
     made = _aligned(max(1, len(rows[0])) * len(rows))
     made[: len(rows[0]) * len(rows)].reshape(-1, len(rows))[:] = np.column_stack(rows) if len(rows) > 1 else rows[0][:, None]

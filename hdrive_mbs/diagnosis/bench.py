@@ -56,7 +56,7 @@ class Bench:
     knowledge : parameters that are not exact, by a name of your own
     measured : columns to compare;  inputs : columns that drive the scene
     angles, speeds : of bodies at the start of every record; 0 if not given
-    names : (family, place of the scene) -> (family, place) as the bench's people call them, for reports
+    together : parameters that are suspected together, by a name for the group; every other one is suspected alone
 
     Subclasses override ``trials`` where a record needs more than its columns put into the scene.
     """
@@ -67,6 +67,7 @@ class Bench:
     inputs: Mapping[str, Input] = field(default_factory=dict)
     angles: Mapping[str, float] = field(default_factory=dict)
     speeds: Mapping[str, float] = field(default_factory=dict)
+    together: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         known = self.scene.parameters()
@@ -74,10 +75,17 @@ class Bench:
             for path in item.paths:
                 if path not in known:
                     raise unknown_place(f"path of {name!r}", path, known, "This scene")
-        channels = {channel.name for channel in self.scene.network().channels}
+        shown = self.scene.network().channels
+        channels = {channel.name for channel in shown} | {f"{channel.name}_acceleration" for channel in shown if channel.factors is not None}
         for column, measured in self.measured.items():
             if measured.channel not in channels:
                 raise unknown_place(f"channel of column {column!r}", measured.channel, channels, "This scene")
+
+    @property
+    def groups(self) -> dict[str, tuple[str, ...]]:
+        """Groups of parameters that may be off together, by name."""
+        grouped = {name for names in self.together.values() for name in names}
+        return {**self.together, **{name: (name,) for name in self.knowledge if name not in grouped}}
 
     def nominal(self, name: str) -> tuple[float, ...]:
         """Nominal values of a parameter at each of its paths."""

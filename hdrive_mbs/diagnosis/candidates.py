@@ -19,8 +19,10 @@ from hdrive_mbs.network.network import Network
 from hdrive_mbs.quantities import Quantity, snake_case
 from hdrive_mbs.scene import Scene
 
-SHAPES = 3
-"""Values of each shape from which a search begins, where the law names none."""
+SHAPES = {1: 3, 2: 2}
+"""Number of shapes of a law -> values of each from which a search begins, where the law names none; with more shapes one."""
+MOST = 9
+"""Starts of a law at a place; of more an even selection is taken."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,6 +147,7 @@ def _starts(kind: type[Effect]) -> Iterator[Effect]:
     """The effect at each combination of start values of its shapes and choices."""
     chosen: dict[str, tuple[Any, ...]] = {}
     phases = {phase for _, phase in kind.vectors}
+    count = SHAPES.get(sum(_is_shape(name, item, kind) for name, item in _quantities(kind).items()), 1)
     for name, quantity in _quantities(kind).items():
         if name in kind.starts:
             chosen[name] = tuple(kind.starts[name])
@@ -155,12 +158,27 @@ def _starts(kind: type[Effect]) -> Iterator[Effect]:
             elif quantity.low == 0.0:
                 chosen[name] = (low,)
             else:
-                ends = [(k + 0.5) / SHAPES for k in range(SHAPES)]
+                ends = [(k + 0.5) / count for k in range(count)]
                 chosen[name] = tuple(low * (high / low) ** end for end in ends)
     for name, values in kind.starts.items():
         chosen.setdefault(name, tuple(values))
-    for combination in itertools.product(*chosen.values()):
+    combinations = list(itertools.product(*chosen.values()))
+    thinned = combinations[:: -(-len(combinations) // MOST)] if _continuous(kind) else combinations
+    for combination in thinned:
         try:
             yield kind(**dict(zip(chosen, combination, strict=True)))
         except HdriveError:
             continue
+
+
+def _is_shape(name: str, quantity: Quantity, kind: type[Effect]) -> bool:
+    """Whether a field is searched on a logarithmic scale from values that the law does not name."""
+    if quantity.typical is None or name in kind.starts or name in {phase for _, phase in kind.vectors}:
+        return False
+    return quantity.typical[0] > 0.0 and quantity.low != 0.0
+
+
+def _continuous(kind: type[Effect]) -> bool:
+    """Whether all fields with start values are searched on from there, so that a few starts will do."""
+    quantities = _quantities(kind)
+    return all(name in quantities and quantities[name].typical is not None for name in kind.starts)

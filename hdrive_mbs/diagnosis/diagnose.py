@@ -2,46 +2,95 @@
 
 from __future__ import annotations
 
+import platform
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial
+from importlib import metadata
+from pathlib import Path
 
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.diagnosis.assumed_bench import assumed_bench
 from hdrive_mbs.diagnosis.bench import Bench
-from hdrive_mbs.diagnosis.candidates import Candidate, candidates
-from hdrive_mbs.diagnosis.fit import Fitted, fit
-from hdrive_mbs.diagnosis.search import Found, Label, Search, Task, fit_nominal, run_task, search
+from hdrive_mbs.diagnosis.candidates import candidates as all_candidates
+from hdrive_mbs.diagnosis.estimates import effect_estimates, nominal_estimates
+from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.gap import gaps
+from hdrive_mbs.diagnosis.gather import Evidence, gather
+from hdrive_mbs.diagnosis.result import Cause, Diagnosis, Place
+from hdrive_mbs.diagnosis.search import Found, Label
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.diagnosis.team import Team
+from hdrive_mbs.diagnosis.traces import traces
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.unknowns import Factor
+from hdrive_mbs.diagnosis.verdict import NONE, UNKNOWN, Claim, judge
+from hdrive_mbs.diagnosis.verify import engine_difference
 from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import HdriveError, ParameterError
+from hdrive_mbs.records.collection import Records
+from hdrive_mbs.records.record import Record
+from hdrive_mbs.scene import Scene
 
+FloatArray = npt.NDArray[np.float64]
 Report = Callable[[str, int, int], None]
-
-
-@dataclass(frozen=True, eq=False)
-class Evidence:
-    """All fits of a case, from which the answer is drawn.
-
-    coarse, fine : records with every few samples, and with all
-    nominal, null : the model as given and refitted, on all samples
-    single : what one cause explains;  pair : what a second one explains besides the best first, if that left something
-    final : best single and best pair, on all samples, with their log odds against the null
-    """
-
-    fine: Simulator
-    nominal: Fitted
-    null: Fitted
-    single: Search
-    pair: Search | None
-    final: tuple[Found, ...]
-
 
 EVERY = 4
 """Samples from one to the next that the search compares; the last fits take all."""
-LEFT = 1.03
-"""Mean square left by the best single cause above which a second one is looked for."""
+AGREES = 0.3
+"""Standard deviations of the noise by which search and engine may differ before a note says so."""
+
+
+def diagnose(
+    bench: Bench | Scene,
+    records: Records | Sequence[Record] | Record,
+    *,
+    candidates: Iterable[type[Effect]] | None = None,
+    workers: int | None = None,
+    folder: str | Path | None = None,
+    step: float | None = None,
+    report: Report | None = None,
+    pictures: bool = True,
+) -> Diagnosis:
+    """Say where a model and its records disagree, which cause explains it, and how far the gap shrinks.
+
+    bench : what is known: scene, uncertain parameters, measured columns with their noise, inputs; of a scene alone the
+        columns are those named like its channels, the noise is estimated and usual tolerances are assumed
+    records : one or several, checked (see ``Record.checked``)
+    candidates : effect classes to try; all of the library and whatever else has been imported if not given
+    workers : processes; 2 if not given and the machine has them
+    folder : where fits are kept, so that an interrupted diagnosis goes on from there
+    step : of the integration [s]; chosen by halving if not given
+    report : called with (stage, done, total)
+    pictures : with histories, located forces and maps for the report
+
+    Raises RecordError for records that do not fit the bench, ParameterError for a bad candidate, AnalysisError where
+    the nominal model cannot be simulated.
+    """
+    started = time.monotonic()
+    chosen = _records(records)
+    known = bench if isinstance(bench, Bench) else assumed_bench(bench, chosen)
+    trials = [trial for record in chosen for trial in known.trials(record)]
+    if not trials:
+        raise ParameterError("A diagnosis needs at least one record.")
+    factors = factors_of(known)
+    tried = all_candidates(trials[0].scene, candidates)
+    step = suitable_step(trials, factors) if step is None else step
+    coarse, fine = Simulator(trials, step, EVERY), Simulator(trials, step)
+    with Team(workers or 1) as team:
+        evidence = gather(coarse, fine, factors, known.groups, tried, team, report)
+    return answer(known, trials, evidence, started=started, pictures=pictures, records=tuple(record.name for record in chosen))
+
+
+def _records(records: Records | Sequence[Record] | Record) -> tuple[Record, ...]:
+    found = (records,) if isinstance(records, Record) else tuple(records)
+    if not found:
+        raise ParameterError("A diagnosis needs at least one record.")
+    for record in found:
+        record.checked()
+    return found
 
 
 def factors_of(bench: Bench) -> tuple[Factor, ...]:
@@ -53,35 +102,136 @@ def factors_of(bench: Bench) -> tuple[Factor, ...]:
     return tuple(found)
 
 
-def gather(
-    trials: Sequence[Trial],
-    factors: Sequence[Factor],
-    groups: Mapping[str, Sequence[str]],
-    tried: Sequence[Candidate],
-    team: Team,
-    *,
-    step: float,
-    report: Report | None = None,
-) -> Evidence:
-    """Fit the nominal model, single causes and, where these leave something, pairs."""
-    said = report or (lambda stage, done, total: None)
-    coarse, fine = Simulator(trials, step, EVERY), Simulator(trials, step)
-    said("fitting the nominal model", 0, 1)
-    null = fit_nominal(coarse, factors)
-    single = search(team, coarse, null, groups, tried, report=said)
-    pair = None
-    best = single.found[0] if single.found else None
-    if best is not None and best.log_odds > 0.0 and best.fitted.chi_fit > LEFT:
-        pair = search(team, coarse, best.fitted, groups, tried, report=lambda stage, k, n: said(f"second cause: {stage}", k, n))
-    serious = [item for item in single.labels[:3]]
-    if pair is not None and pair.found:
-        serious.append(pair.found[0])
-    origin = null.z * 0.0
-    tasks = [Task(null.hypothesis, origin, None, 0, 1.0), Task(null.hypothesis, null.z, None, 6, 1e-5)]
-    tasks += [Task(item.fitted.hypothesis, item.fitted.z, None, 6, 1e-5) for item in serious]
-    fits = team.map(run_task, fine, tasks, partial(said, "all samples"))
-    final = tuple(Found(item.suspect, fitted) for item, fitted in zip(serious, fits[2:], strict=True))
-    return Evidence(fine=fine, nominal=fits[0], null=fits[1], single=single, pair=pair, final=final)
+def answer(
+    bench: Bench, trials: Sequence[Trial], evidence: Evidence, *, started: float, pictures: bool, records: tuple[str, ...]
+) -> Diagnosis:
+    """The answer that the fits of a case give."""
+    pair = evidence.pairs[0] if evidence.pairs else None
+    claim = judge(evidence.null.chi_held, evidence.singles, pair)
+    best = evidence.null if claim.fit is None or claim.kind == "unknown" else claim.fit.fitted
+    improved = best.hypothesis.scene(bench.scene, best.z)
+    notes: list[str] = []
+    claimed = () if claim.kind in ("none", "unknown") or claim.fit is None else _causes(claim.fit, claim, improved, bench.groups)
+    where: tuple[Place, ...] = ()
+    extras: dict[str, object] = {}
+    if pictures:
+        extras["traces"] = traces(evidence.fine, evidence.nominal, evidence.null, best)
+    notes += _verified(evidence.fine, best)
+    notes += [f"{best.hypothesis.label}: the fit had not converged when it stopped." for _ in range(not best.converged)]
+    return Diagnosis(
+        scene=bench.scene,
+        improved=improved,
+        records=records,
+        verdict=claim.kind,
+        causes=claimed,
+        indistinguishable=claim.tied,
+        ranking=_ranking(evidence, claim),
+        where=where,
+        gaps=gaps(evidence.fine, evidence.nominal.residuals, evidence.null.residuals, best.residuals),
+        parameters=nominal_estimates(best, bench.scene),
+        notes=tuple(notes),
+        seconds=time.monotonic() - started,
+        versions=_versions(),
+        **extras,  # type: ignore[arg-type]
+    )
 
 
-__all__ = ["Effect", "Evidence", "Iterable", "Label", "candidates", "factors_of", "fit", "gather", "time"]
+def _causes(found: Found, claim: Claim, improved: Scene, groups: Mapping[str, Sequence[str]]) -> tuple[Cause, ...]:
+    """What is claimed: every loosened group and every added effect of the chosen hypothesis."""
+    fitted = found.fitted
+    common = {"log_odds": found.log_odds, "fit": fitted.chi_fit, "held_out": fitted.chi_held}
+    causes = []
+    for item in fitted.hypothesis.added:
+        kind = type(item.effect)
+        causes.append(
+            Cause(
+                effect=kind.family,
+                at=item.at,
+                kind=kind.kind,
+                law=kind.__name__,
+                signature=kind.signature,
+                probability=claim.probabilities.get(item.label, claim.probabilities.get(found.suspect.label, 0.0)),
+                parameters=effect_estimates(fitted, improved, item.name),
+                **common,
+            )
+        )
+    for group, names in groups.items():
+        if not set(names) & set(fitted.hypothesis.loose):
+            continue
+        estimates = tuple(item for item in nominal_estimates(fitted, improved) if item.name in names)
+        label = ("parameter", group)
+        causes.append(
+            Cause(
+                effect="parameter",
+                at=group,
+                kind="parameter",
+                law="parameter",
+                probability=claim.probabilities.get(label, claim.probabilities.get(found.suspect.label, 0.0)),
+                parameters=estimates,
+                **common,
+            )
+        )
+    return tuple(causes)
+
+
+def _ranking(evidence: Evidence, claim: Claim) -> tuple[Cause, ...]:
+    """Every label that was fitted, and "none" and "unknown", most probable first."""
+    fits: dict[Label, Found] = {item.suspect.label: item for item in (*evidence.singles, *evidence.single.labels)[::-1]}
+    causes = []
+    for label, probability in claim.probabilities.items():
+        found = fits.get(label)
+        if found is None:
+            null = evidence.null
+            kind = "none" if label == NONE else "unknown" if label == UNKNOWN else ""
+            causes.append(
+                Cause(
+                    effect=label[0],
+                    at=label[1],
+                    kind=kind,
+                    law="",
+                    probability=probability,
+                    log_odds=0.0,
+                    fit=null.chi_fit,
+                    held_out=null.chi_held,
+                )
+            )
+            continue
+        added = found.fitted.hypothesis.added
+        kind = type(added[-1].effect).kind if added else "parameter"
+        signature = type(added[-1].effect).signature if added else ""
+        causes.append(
+            Cause(
+                effect=label[0],
+                at=label[1],
+                kind=kind,
+                law=found.suspect.law,
+                signature=signature,
+                probability=probability,
+                log_odds=found.log_odds,
+                fit=found.fitted.chi_fit,
+                held_out=found.fitted.chi_held,
+            )
+        )
+    return tuple(causes)
+
+
+def _verified(simulator: Simulator, fitted: Fitted) -> list[str]:
+    """A note on how far the multibody engine is from the compiled run of the answer."""
+    try:
+        difference = engine_difference(simulator, fitted)
+    except HdriveError as error:
+        return [f"Not verified on the engine: {error}"]
+    agrees = "agree" if difference < AGREES else "DIFFER"
+    return [f"Search and multibody engine {agrees}: rms difference {difference:.2g} of the noise at most, {fitted.hypothesis.label}."]
+
+
+def _versions() -> Mapping[str, str]:
+    found = {"python": platform.python_version()}
+    for name in ("hdrive_mbs", "exudyn", "numpy", "scipy"):
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found[name] = "not installed"
+    return found
+
+

@@ -182,6 +182,24 @@ class Hypothesis:
         """Of the normal priors, by coordinate."""
         return np.concatenate([np.full(unknown.size, unknown.precision) for unknown in self.unknowns]) if self.unknowns else np.zeros(0)
 
+    def reaches(self, z: FloatArray) -> FloatArray:
+        """Longest changes in one step of a fit, by coordinate."""
+        pairs = zip(self.unknowns, self.slices, strict=True)
+        return np.concatenate([np.full(unknown.size, unknown.reach(z[part].tolist())) for unknown, part in pairs])
+
+    def rescaled(self, z: FloatArray) -> tuple[Hypothesis, FloatArray]:
+        """The same hypothesis with strengths measured in their present values, and the coordinates of the same point."""
+        values = self.values(z)
+        added = []
+        for item in self.added:
+            prefix = f"{item.name}."
+            own = {path.removeprefix(prefix): value for path, value in values.items() if path.startswith(prefix)}
+            added.append(Added(item.effect.replacing(**own), item.at, item.name))
+        new = Hypothesis(self.factors, tuple(added), self.loose)
+        start = new.start()
+        start[: self.nominal_size] = z[: self.nominal_size]
+        return new, start
+
     def curvatures(self, z: FloatArray) -> FloatArray:
         """Of the priors, by coordinate."""
         pairs = zip(self.unknowns, self.slices, strict=True)

@@ -153,12 +153,13 @@ class Trace:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LatentForce:
-    """What an unknown force at a place must have been, so that the refitted nominal model follows a record.
+    """What an unknown force at a place must have been, so that the refitted nominal model follows a record; or the error of a sensor.
 
-    at : place;  unit : of the force: N m, N, or the unit of a kinematic or sensor error
-    times : s;  force : its smoothed estimate;  speed, angle : of the place [rad/s, rad];  twist : of a connection [rad];  torque :
-    through the place [N m];  each empty where there is none
-    record : name;  spread : standard deviation of the estimate; empty if not known
+    at, way : place and direction;  record : its name;  unit : of the force, N m or N, or of the sensor's reading
+    times : s;  force : its smoothed estimate
+    angle, speed : of the place [rad, rad/s]; of a connection how far its ends are turned against each other
+    torque : through a connection in the model [N m];  twist : of a connection [rad] where angle is that of a body
+    spread : standard deviation of the estimate;  each empty or nan where there is none
     """
 
     at: str
@@ -167,9 +168,10 @@ class LatentForce:
     force: FloatArray
     speed: FloatArray
     angle: FloatArray
-    twist: FloatArray
+    way: str = ""
     record: str = ""
     torque: FloatArray = field(default_factory=_nothing)
+    twist: FloatArray = field(default_factory=_nothing)
     spread: FloatArray = field(default_factory=_nothing)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis, start_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 
 FloatArray = npt.NDArray[np.float64]
@@ -34,7 +34,7 @@ class Look:
 
 
 class Screen:
-    """The fitted nominal model with its Jacobian, from which all candidates are looked at."""
+    """A fitted model, nominal or with causes already, and its Jacobian, from which all candidates are looked at."""
 
     def __init__(self, simulator: Simulator, null: Fitted, columns: FloatArray) -> None:
         self.simulator, self.null, self.columns = simulator, null, columns
@@ -45,46 +45,68 @@ class Screen:
     def look(self, hypotheses: Sequence[Hypothesis]) -> Look | None:
         """The best of several starts; None where none of them can be run."""
         best: Look | None = None
-        for look in self._looks(hypotheses):
-            if best is None or look.cost < best.cost:
-                best = look
-        return best
+        for some in _alike(hypotheses):
+            for look in self._looks(some):
+                if best is None or look.cost < best.cost:
+                    best = look
+        if best is None:
+            return None
+        hypothesis, z = best.hypothesis.rescaled(best.z)
+        return Look(hypothesis, z, best.cost, best.residuals)
 
-    def _looks(self, hypotheses: Sequence[Hypothesis]) -> Iterator[Look]:
-        for hypothesis in hypotheses:
-            start = hypothesis.start(self.null.hypothesis.nominal_part(self.null.z))
-            base, columns = self._base(hypothesis, start)
-            if base is None:
-                continue
-            points = self._steps(hypothesis, start, base, columns)
-            for point, residuals in zip(points, self.simulator.residuals(hypothesis, points), strict=True):
-                if residuals is not None:
-                    misfit = self.simulator.blocks.cost(residuals[self.simulator.fit])
-                    yield Look(hypothesis, point, misfit + hypothesis.prior_cost(point), residuals)
+    def _looks(self, starts: Sequence[Hypothesis]) -> Iterator[Look]:
+        """Looks from starts that differ in searched values alone: all of them are run side by side."""
+        hypothesis = starts[0]
+        first = self.null.hypothesis.size
+        steps = hypothesis.steps(self._start(hypothesis))
+        origins = [self._start(start, hypothesis) for start in starts]
+        points = []
+        for origin in origins:
+            points.append(origin)
+            for k in range(first, hypothesis.size):
+                moved = origin.copy()
+                moved[k] += steps[k]
+                points.append(moved)
+        each = 1 + hypothesis.size - first
+        found = self.simulator.residuals(hypothesis, points) if each > 1 else [self.null.residuals] * len(points)
+        tried: list[FloatArray] = []
+        for number, origin in enumerate(origins):
+            own = found[number * each : (number + 1) * each]
+            if own[0] is not None:
+                tried += self._steps(hypothesis, origin, *self._columns(own, steps[first:]))
+        for point, residuals in zip(tried, self.simulator.residuals(hypothesis, tried), strict=True):
+            if residuals is not None:
+                misfit = self.simulator.blocks.cost(residuals[self.simulator.fit])
+                yield Look(hypothesis, point, misfit + hypothesis.prior_cost(point), residuals)
 
-    def _base(self, hypothesis: Hypothesis, start: FloatArray) -> tuple[FloatArray | None, FloatArray]:
-        """Residuals at the start, and the Jacobian's columns of everything but the nominal parameters."""
-        first = hypothesis.nominal_size
-        steps = hypothesis.steps(start)
-        points = [start]
-        for k in range(first, hypothesis.size):
-            moved = start.copy()
-            moved[k] += steps[k]
-            points.append(moved)
-        found = self.simulator.residuals(hypothesis, points) if hypothesis.added else [self.null.residuals]
-        base = found[0]
-        if base is None:
-            return None, np.zeros((0, 0))
-        fitted = base[self.simulator.fit]
-        columns = np.zeros((hypothesis.size - first, len(fitted)))
+    def _columns(self, found: Sequence[FloatArray | None], steps: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Fitted residuals at a start, and the Jacobian's columns of everything that the base has not."""
+        assert found[0] is not None
+        fitted = found[0][self.simulator.fit]
+        columns = np.zeros((len(steps), len(fitted)))
         for k, item in enumerate(found[1:]):
             if item is not None:
-                columns[k] = (item[self.simulator.fit] - fitted) / steps[first + k]
+                columns[k] = (item[self.simulator.fit] - fitted) / steps[k]
         return fitted, columns.T
 
+    def _start(self, start: Hypothesis, hypothesis: Hypothesis | None = None) -> FloatArray:
+        """The base's parameters, and the start values of what is added to it, in the scales of a hypothesis."""
+        base = self.null
+        given = hypothesis or start
+        z = given.start(base.hypothesis.nominal_part(base.z))
+        z[base.hypothesis.nominal_size : base.hypothesis.size] = base.z[base.hypothesis.nominal_size :]
+        if given is not start:
+            at = base.hypothesis.size
+            for item, scaled in zip(start.added[len(base.hypothesis.added) :], given.added[len(base.hypothesis.added) :], strict=True):
+                for unknown in scaled.unknowns:
+                    z[at : at + unknown.size] = start_of(unknown, item.effect, item.name)
+                    at += unknown.size
+        return z
+
     def _steps(self, hypothesis: Hypothesis, start: FloatArray, base: FloatArray, columns: FloatArray) -> list[FloatArray]:
-        first = hypothesis.nominal_size
-        wide = np.array([hypothesis.loose.get(item.name, 1.0) for item in hypothesis.factors])
+        first, base_loose = self.null.hypothesis.size, self.null.hypothesis.loose
+        wide = np.ones(first)
+        wide[: hypothesis.nominal_size] = [hypothesis.loose.get(f.name, 1.0) / base_loose.get(f.name, 1.0) for f in hypothesis.factors]
         normal = np.zeros((hypothesis.size, hypothesis.size))
         normal[:first, :first] = self._normal * np.outer(wide, wide)
         weighted = columns * self._weights[:, None]
@@ -95,6 +117,20 @@ class Screen:
         slope += hypothesis.precisions * start
         move = bounded_step(normal, slope, hypothesis, start)
         return [hypothesis.clipped(start + shrink * move) for shrink in SHRINKS]
+
+
+def _alike(hypotheses: Sequence[Hypothesis]) -> list[list[Hypothesis]]:
+    """Starts by what is not searched in them: their laws and choices."""
+    groups: dict[object, list[Hypothesis]] = {}
+    for hypothesis in hypotheses:
+        groups.setdefault(tuple(_choices(item) for item in hypothesis.added), []).append(hypothesis)
+    return list(groups.values())
+
+
+def _choices(added: Added) -> tuple[object, ...]:
+    searched = {path for unknown in added.unknowns for path in unknown.values([0.0] * unknown.size)}
+    fields = ((name, value) for name, value, _ in added.effect.fields() if f"{added.name}.{name}" not in searched)
+    return type(added.effect), added.at, added.name, *(f"{name}={value!r}" for name, value in fields)
 
 
 def bounded_step(normal: FloatArray, slope: FloatArray, hypothesis: Hypothesis, start: FloatArray) -> FloatArray:

@@ -26,10 +26,12 @@ LOOSE = 10.0
 """Times its prior standard deviation that a suspected parameter may be off."""
 COARSE, FINE = 3e-3, 1e-4
 """Relative change of the cost that ends the fit of the nominal model, whose misfit may have no explanation in it, and of others."""
-BRIEF, LAWS, STEPS = 10, 2, 3
-"""Labels that are looked at closer, laws of each that get joint steps, and how many of these."""
-KEPT, SERIOUS, CONVERGED = 6, 3, 25
-"""Laws that are fitted on, how many of them to the end, and steps that this may take."""
+BRIEF, LAWS, STEPS = (4, 10), 2, 3
+"""Labels that are looked at closer (at least, at most), laws of each that get joint steps, and how many of these."""
+KEPT, SERIOUS, CONVERGED = (3, 6), 3, 25
+"""Laws that are fitted on (at least, at most), how many of them to the end, and steps that this may take."""
+SHARE = 0.08
+"""Of the best one's gain: what gains less is followed up only to fill the least number."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +137,8 @@ def search(
     everything = suspects(base.hypothesis, groups, tried)
     simple = _simplest(everything)
     looks = _looked(team, screen, simple, [item.first for item in simple], partial(said, "looking at candidates"))
-    chosen = [suspect.label for suspect, _ in looks[:BRIEF]]
+    costs = [look.cost for _, look in looks]
+    chosen = [suspect.label for suspect, _ in looks[: _worth(base.cost, costs, BRIEF)]]
     laws = [suspect for suspect in everything if suspect.label in chosen]
     closer = _looked(team, screen, laws, [item.all for item in laws], partial(said, "looking closer"))
     picked = _picked(closer, laws=LAWS)
@@ -143,12 +146,20 @@ def search(
     fits = team.map(run_task, simulator, tasks, partial(said, "a few joint steps"))
     brief = [Found(suspect, fitted) for (suspect, _), fitted in zip(picked, fits, strict=True)]
     brief.sort(key=lambda item: item.fitted.cost)
-    kept = brief[:KEPT]
+    kept = brief[: _worth(base.cost, [item.fitted.cost for item in brief], KEPT)]
     tasks = [further(item.fitted, CONVERGED if k < SERIOUS else STEPS) for k, item in enumerate(kept)]
     fits = team.map(run_task, simulator, tasks, partial(said, "fitting the best"))
     final = [scored(Found(item.suspect, fitted), base) for item, fitted in zip(kept, fits, strict=True)]
     final.sort(key=lambda item: -item.log_odds)
     return Search(base=base, found=tuple(final), looks={f"{suspect.law} at {suspect.label[1]}": look.cost for suspect, look in looks})
+
+
+def _worth(before: float, costs: Sequence[float], limits: tuple[int, int]) -> int:
+    """How many of the cheapest are worth more work: those that gain a fair share of what the best gains, within limits."""
+    least, most = limits
+    gains = [before - cost for cost in costs]
+    fair = sum(gain > SHARE * gains[0] for gain in gains) if gains and gains[0] > 0.0 else 0
+    return min(max(fair, least), most)
 
 
 def _looked(

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.compiled.line import CompiledLine, run_many
+from hdrive_mbs.compiled.line import run_many
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.lines import Lines, Start
 from hdrive_mbs.diagnosis.noise import Whitener
 from hdrive_mbs.diagnosis.robust import Blocks
 from hdrive_mbs.diagnosis.trial import Trial
-from hdrive_mbs.errors import LawError, ParameterError, SimulationError
+from hdrive_mbs.errors import ParameterError, SimulationError
 
 FloatArray = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
+Values = dict[str, FloatArray]
 
 BLOCKS = 12
 """Stretches of a record, each with its own scale where the model is wrong."""
+KEPT = 16
+"""Runs of each trial that are kept: an effect of sensors or of the drive leaves some trials as they are."""
 LARGEST = 1e7
 """A whitened residual beyond it counts as this: such a run is far from the record."""
 
@@ -70,6 +75,18 @@ class Simulator:
         self.used = self.fit | self.held_out
         self.blocks = Blocks(self._numbered()[self.fit])
         self.runs = 0
+        self._forget()
+
+    def _forget(self) -> None:
+        self._lines = Lines(self.trials)
+        self._kept: list[OrderedDict[object, Values | None]] = [OrderedDict() for _ in self.trials]
+
+    def __getstate__(self) -> dict[str, object]:
+        return {name: value for name, value in self.__dict__.items() if name not in ("_lines", "_kept")}
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        self.__dict__.update(state)
+        self._forget()
 
     def _numbered(self) -> npt.NDArray[np.int64]:
         """Block of every residual: BLOCKS stretches of each column of each trial."""
@@ -88,8 +105,9 @@ class Simulator:
         """Whitened residuals at each point, shape (size,); None where a point cannot be simulated."""
         found: list[FloatArray | None] = [np.empty(self.size) for _ in points]
         index = 0
-        for trial in self.trials:
-            simulated = self._simulated(trial, hypothesis, points)
+        starts = self._lines.at(hypothesis, points)
+        for number, trial in enumerate(self.trials):
+            simulated = self._simulated(number, starts[number])
             for column in trial.columns:
                 span, whiten, measured, there = self.segments[index].span, self._whiteners[index], self._measured[index], self._there[index]
                 for k, values in enumerate(simulated):
@@ -102,29 +120,44 @@ class Simulator:
                 index += 1
         return found
 
-    def _simulated(self, trial: Trial, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[dict[str, FloatArray] | None]:
-        """Values of the columns of a trial at its samples, by point."""
-        channels = [trial.measured[column].channel for column in trial.columns]
-        lines: list[CompiledLine] = []
-        where: list[int] = []
-        for k, point in enumerate(points):
-            try:
-                network = hypothesis.scene(trial.scene, point).network()
-                lines.append(CompiledLine(network, channels))
-                where.append(k)
-            except (ParameterError, LawError):
-                continue
+    def columns(self, hypothesis: Hypothesis, point: FloatArray) -> list[Values]:
+        """Simulated values of the columns of each trial, in their units; empty where a trial cannot be run."""
+        starts = self._lines.at(hypothesis, [point])
+        return [self._simulated(number, starts[number])[0] or {} for number in range(len(self.trials))]
+
+    def start_of(self, number: int, hypothesis: Hypothesis, point: FloatArray) -> dict[str, float]:
+        """Angles at which a trial starts [rad, m], by coordinate."""
+        start = self._lines.at(hypothesis, [point])[number][0]
+        return {} if start is None else dict(start.angles)
+
+    def _simulated(self, number: int, starts: Sequence[Start | None]) -> list[Values | None]:
+        """Values of the columns of a trial at its samples, by point; equal lines are run once."""
+        kept = self._kept[number]
+        keys = [None if start is None else start.key for start in starts]
+        new = {key: start for key, start in zip(keys, starts, strict=True) if key not in kept and start is not None}
+        found = dict(zip(new, self._run(self.trials[number], list(new.values())), strict=True))
+        for key in keys:
+            if key in kept:
+                kept.move_to_end(key)
+                found[key] = kept[key]
+        kept.update(found)
+        while len(kept) > KEPT:
+            kept.popitem(last=False)
+        return [None if key is None else found[key] for key in keys]
+
+    def _run(self, trial: Trial, starts: Sequence[Start]) -> list[Values | None]:
         late = {column for column, item in trial.measured.items() if item.late}
         fold = 2 if late else 1
-        runs = run_many(lines, fold * trial.samples, trial.every / fold, step=self.step, angles=trial.angles, speeds=trial.speeds)
+        lines, angles = [start.line for start in starts], [start.angles for start in starts]
+        runs = run_many(lines, fold * trial.samples, trial.every / fold, step=self.step, angles=angles, speeds=trial.speeds)
         self.runs += len(lines)
-        found: list[dict[str, FloatArray] | None] = [None] * len(points)
-        for k, run in zip(where, runs, strict=True):
+        found: list[Values | None] = []
+        for run in runs:
             if isinstance(run, SimulationError):
-                continue
-            found[k] = {
-                column: run.values[trial.measured[column].channel][(1 if column in late else 0) :: fold] for column in trial.columns
-            }
+                found.append(None)
+            else:
+                channel = {column: run.values[trial.measured[column].channel] for column in trial.columns}
+                found.append({column: values[(1 if column in late else 0) :: fold].copy() for column, values in channel.items()})
         return found
 
 

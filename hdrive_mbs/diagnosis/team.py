@@ -86,7 +86,8 @@ class Team:
     def _side_by_side(
         self, function: Callable[[Any, Item], Answer], shared: Any, items: Sequence[Item], said: Callable[[int, int], None]
     ) -> Iterator[Answer]:
-        assert self._pool is not None and self._folder is not None
+        assert self._pool is not None
+        assert self._folder is not None
         self._number += 1
         path = Path(self._folder.name) / f"{self._number}.pickle"
         path.write_bytes(pickle.dumps(shared))
@@ -94,7 +95,7 @@ class Team:
         waiting = set(futures)
         try:
             while waiting:
-                finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+                _finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
                 said(len(futures) - len(waiting), len(futures))
             for future in futures:
                 yield future.result()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.expression import Value
 from hdrive_mbs.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
@@ -26,7 +27,9 @@ class Trial:
     measured : what each of these columns is
     held_out : samples that no fit may see, shape (n,)
     angles, speeds : of bodies at the start [rad, m, rad/s, m/s]; 0 if not given
-    settled : whether lateral coordinates start at rest where the forces on them balance
+    settled : whether lateral coordinates start where the line, with the very parameters and effects of a run, stays at rest;
+        forces of time are those at the start of the first of the trials that share a scene
+    motions : places that follow a measured angle, by name, whatever turns them in the scene: forward angle over time
     """
 
     name: str
@@ -38,6 +41,7 @@ class Trial:
     angles: Mapping[str, float] = field(default_factory=dict)
     speeds: Mapping[str, float] = field(default_factory=dict)
     settled: bool = False
+    motions: Mapping[str, Callable[[Value], Value]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if set(self.columns) != set(self.measured):

@@ -58,6 +58,10 @@ class Unknown(ABC):
         """Difference for numerical derivatives."""
         return 0.01
 
+    def reach(self, z: Sequence[float]) -> float:
+        """Longest change of a coordinate in one step of a fit."""
+        return 2.0
+
 
 def _normal(z: Sequence[float]) -> float:
     return sum(-0.5 * value**2 - 0.5 * math.log(2.0 * math.pi) for value in z)
@@ -84,6 +88,9 @@ class Factor(Unknown):
 
     def step(self, z: Sequence[float]) -> float:
         return 0.01 / self.wide
+
+    def reach(self, z: Sequence[float]) -> float:
+        return 3.0
 
 
 @dataclass(frozen=True)
@@ -113,6 +120,9 @@ class Strength(Unknown):
 
     def step(self, z: Sequence[float]) -> float:
         return 0.003 * max(z[0], 0.1)
+
+    def reach(self, z: Sequence[float]) -> float:
+        return 2.0 * max(z[0], 0.1 * self.high / self.scale)
 
 
 @dataclass(frozen=True)
@@ -203,3 +213,6 @@ class Vector(Unknown):
 
     def step(self, z: Sequence[float]) -> float:
         return 0.003 * max(math.hypot(*z), 0.1)
+
+    def reach(self, z: Sequence[float]) -> float:
+        return 2.0 * max(math.hypot(*z), 0.1 * self.high / self.scale)

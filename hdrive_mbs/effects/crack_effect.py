@@ -26,7 +26,7 @@ class CrackEffect(Effect):
     open.  The piece of shaft is exact between its ends: with the moments M_0 that the same ends would give without the crack and
     the moment h that a unit kink meets there,  M = M_0 - h a,  so  a = g c M_0/(1 + h g c), and the forces at the ends change by
     -a dM_0/dq.  The moments are whole ones, with what the weight does: that, turning, is where 1x and 2x come from.
-    The torque on the spin is such that what an always open crack stores comes back.
+    The spin angle is that of the nearer end.  The torque on the spin is such that what an always open crack stores comes back.
     """
 
     compliance: float = parameter("rad/(N m)", "c, extra angle per bending moment when open", low=0.0, high=1.0, typical=(1e-9, 1e-5))
@@ -73,7 +73,7 @@ class CrackEffect(Effect):
         down = (draft.gravity[0] / pull, draft.gravity[1] / pull) if pull > 0.0 else (0.0, 0.0)
         self.check_gravity(down, place)
         c, e, size = self.compliance, self.cross_share, shape.size
-        stretches = {**shape.stretches, "phi": piece.spin}
+        stretches = {**shape.stretches, "phi": piece.spin(self.position)}
 
         def seen(s: Mapping[str, Value]) -> tuple[Value, ...]:
             """Cosine and sine of the crack's direction, M_0 along and across it, opening and its slope."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -18,7 +19,7 @@ class Misalignment(LateralEffect):
 
     F = sum(exp(i d) (A_n cos(n f + p_n) + i e A_n sin(n f + p_n))),  F = F_x + i F_y,  n = 1, 2, 3
 
-    with the twisted spin angle f of the place: ellipses with the larger half axis A_n along d and the share e of it
+    with the twisted spin angle f of the place: ellipses with the half axis A_n along d and the share e of it
     across, one way round for e > 0, a fixed line for e = 0, the other way round for e < 0.  With a lever l the force acts
     at the distance l beyond the place along +z: moments M_x = -l F_y and M_y = l F_x, those of angular misalignment.
 
@@ -34,7 +35,7 @@ class Misalignment(LateralEffect):
     thrice: float = parameter("N", "A_3 at order 3, 0-peak", default=0.0, low=0.0, high=1e6, typical=(0.01, 1e3))
     thrice_phase: float = parameter("rad", "p_3, phase at spin angle 0", default=0.0, typical=(-np.pi, np.pi))
     roundness: float = parameter(
-        "1", "e, minor over major axis, negative against the spin", default=1.0, low=-1.0, high=1.0, typical=(-1.0, 1.0)
+        "1", "e, half axis across d over the one along d, negative against the spin", default=1.0, low=-2.0, high=2.0, typical=(-1.0, 1.0)
     )
     direction: float = parameter("rad", "d, of the major axis, from x towards y", default=0.0)
     lever: float = parameter("m", "l, how far beyond the place the force acts along +z", default=0.0)
@@ -43,6 +44,7 @@ class Misalignment(LateralEffect):
     family: ClassVar[str] = "misalignment"
     excites: ClassVar[bool] = True
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("once", "once_phase"), ("twice", "twice_phase"), ("thrice", "thrice_phase"))
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"roundness": (0.0, 1.0)}
     signature: ClassVar[str] = (
         "vibration twice per turn, with some once and three times, that resonates at half a critical speed and does not grow with speed"
     )

@@ -49,7 +49,7 @@ class WholeShaftEffect(Effect):
         shapes = bent_shapes(piece)
         stretches = {f"{key}{k}": shape.stretches[key] for k, (shape, _) in enumerate(shapes) for key in "xy"}
         draft.add_coupling(
-            name, stretches | {"phi": piece.spin}, self._forces([stiffness for _, stiffness in shapes]), dissipative=self.dissipative
+            name, stretches | {"phi": piece.spin()}, self._forces([stiffness for _, stiffness in shapes]), dissipative=self.dissipative
         )
 
     def _forces(self, stiffnesses: list[float]) -> Callable[[Moment, Mapping[str, Value], Mapping[str, Value]], Mapping[str, Value]]:

@@ -100,7 +100,7 @@ class ShaftPiece:
                     result[name] = result.get(name, 0.0) + float(factor)
         return result
 
-    @property
-    def spin(self) -> dict[str, float]:
-        """True spin angle of end a (of b where a is held) as factors of coordinates."""
-        return next(station for station in self.ends if not station.held).stretch("phi")
+    def spin(self, share: float = 0.0) -> dict[str, float]:
+        """True spin angle of the end that is nearer to a share of the length from a, and not held, as factors of coordinates."""
+        near, far = self.ends if share < 0.5 else self.ends[::-1]
+        return (far if near.held else near).stretch("phi")

@@ -1,0 +1,203 @@
+"""``hdrive-mbs diagnose``: why a simulation and measured records disagree."""
+
+from __future__ import annotations
+
+import hashlib
+import json as json_text
+import re
+import shutil
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hdrive_mbs.cli.options import JsonFile
+from hdrive_mbs.cli.output import write_json
+from hdrive_mbs.cli.python_file import imported, lines_named, own_effects
+from hdrive_mbs.cli.stages import stage_bars
+from hdrive_mbs.errors import FileFormatError, SceneError
+from hdrive_mbs.scene import Scene
+from hdrive_mbs.scene_file import load_scene, save_scene
+from hdrive_mbs.writing import write_text
+
+if TYPE_CHECKING:
+    from hdrive_mbs.diagnosis.bench import Bench
+    from hdrive_mbs.diagnosis.result import Diagnosis
+    from hdrive_mbs.effects.effect import Effect
+    from hdrive_mbs.records.collection import Records
+
+WORK, JOB = "work", "job.json"
+"""Folder in --out that holds what is done while it is not finished, and the file in it that says of what."""
+
+
+def diagnose(
+    scene: Annotated[
+        Path, typer.Argument(metavar="SCENE", help="A .py file with bench() -> Bench, or with build() -> Scene, or a scene file.")
+    ],
+    records: Annotated[
+        list[Path], typer.Option("--records", metavar="DIR_OR_FILES", help="A folder or files of measured records; several may follow.")
+    ],
+    more: Annotated[list[Path] | None, typer.Argument(metavar="[RECORD]...", help="More records: what follows --records.")] = None,
+    effects: Annotated[
+        list[Path] | None, typer.Option("--effects", metavar="FILE.py", help="A file of your own whose Effect classes are tried too.")
+    ] = None,
+    channel: Annotated[
+        list[str] | None,
+        typer.Option("--channel", metavar="COLUMN=PLACE.QUANTITY", help="What a column measures, e.g. n_mot=motor.speed (several times)."),
+    ] = None,
+    unit: Annotated[
+        list[str] | None, typer.Option("--unit", metavar="COLUMN=UNIT", help="Unit of a column where the file says none (several times).")
+    ] = None,
+    time: Annotated[str | None, typer.Option("--time", metavar="COLUMN", help="Column with the time, or a rate like '5 kHz'.")] = None,
+    repair: Annotated[
+        list[str] | None, typer.Option("--repair", metavar="FAULT=HOW", help="Repair records, e.g. gaps=interpolate (several times).")
+    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Processes on this machine.")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with an interrupted diagnosis in --out.")] = False,
+    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for report, pictures and the improved scene.")] = None,
+    json: JsonFile = None,
+) -> None:
+    """Say where the gap between simulation and records lies, which effect causes it, and how far it shrinks once that is added."""
+    chosen = open_bench(scene)
+    kinds = tried(effects or ())
+    reading: dict[str, Any] = {
+        "channels": _pairs("--channel", channel) or None,
+        "units": _pairs("--unit", unit),
+        "time": time,
+        "repair": _pairs("--repair", repair) or None,
+    }
+    paths = [*records, *(more or ())]
+    measured = _read(paths, reading)
+    name = chosen.name if isinstance(chosen, Scene) else chosen.scene.name
+    folder = out or Path("results") / re.sub(r"\W+", "_", f"diagnosis {name}")
+    work = _begin(folder / WORK, _job(scene, measured, effects or (), reading), resume)
+    from hdrive_mbs.diagnosis.diagnose import diagnose as run
+
+    try:
+        with stage_bars() as report:
+            result = run(chosen, measured, candidates=kinds, workers=workers, folder=work, report=report)
+    except KeyboardInterrupt:
+        print(f"interrupted; what is done is kept in {work}. The same command with --resume goes on.", file=sys.stderr)
+        raise typer.Exit(130) from None
+    write_answer(result, folder)
+    shutil.rmtree(work)
+    if json is not None:
+        from hdrive_mbs.diagnosis.report_json import report_document
+
+        write_json(json, report_document(result))
+    if json != "-":
+        print(result, end="")
+        print(f"\nReport with pictures: {folder / 'diagnosis.html'}")
+
+
+def open_bench(path: Path) -> Bench | Scene:
+    """What the file gives: its bench(), or else its build(), or the scene of a scene file.
+
+    Raises FileFormatError or SceneError for a file that gives neither.
+    """
+    if path.suffix.lower() in (".toml", ".json"):
+        return load_scene(path)
+    module = imported(path, "a .py file with bench() -> Bench or build() -> Scene, or a .toml or .json scene")
+    from hdrive_mbs.diagnosis.bench import Bench
+
+    for name, kind in (("bench", Bench), ("build", Scene)):
+        function = getattr(module, name, None)
+        if function is None:
+            continue
+        with lines_named(path):
+            made = function()
+        if not isinstance(made, kind):
+            raise SceneError(f"{path}: {name}() returned a {type(made).__name__}, not a {kind.__name__}.")
+        return made
+    raise SceneError(f"{path} has neither a function bench() that returns a Bench nor build() that returns a Scene.")
+
+
+def tried(files: Sequence[Path]) -> list[type[Effect]] | None:
+    """The library and the effects of these files; None for the library alone."""
+    if not files:
+        return None
+    own = [kind for path in files for kind in own_effects(path)]
+    from hdrive_mbs.diagnosis.candidates import known_effects
+
+    return [*own, *(kind for kind in known_effects() if kind not in own)]
+
+
+def write_answer(result: Diagnosis, folder: Path) -> None:
+    """Text, JSON, improved scene, summary picture and page into a folder; the answer itself first."""
+    from hdrive_mbs.diagnosis.report_json import write_report_json
+    from hdrive_mbs.diagnosis.report_text import write_report
+
+    write_report_json(result, folder / "diagnosis.json")
+    write_report(result, folder / "diagnosis.txt")
+    try:
+        save_scene(result.improved, folder / "improved.toml")
+    except FileFormatError as error:
+        print(f"The improved scene was not written: {error}", file=sys.stderr)
+    from hdrive_mbs.plots import plot, save_figure
+    from hdrive_mbs.plots.report_html import write_report_html
+
+    save_figure(plot(result), folder / "diagnosis")
+    write_report_html(result, folder / "diagnosis.html")
+
+
+def _read(paths: Sequence[Path], reading: Mapping[str, Any]) -> Records:
+    """Records of a folder and files together."""
+    from hdrive_mbs.records.collection import Records
+    from hdrive_mbs.records.reading import read_records
+
+    for path in paths:
+        if not path.exists():
+            raise FileFormatError(f"{path}: no such file or folder. Give measured records with --records.")
+    files = [path for path in paths if not path.is_dir()]
+    found = [read_records(path, **reading) for path in paths if path.is_dir()]
+    if files:
+        found.append(read_records(files, **reading))
+    return Records(records=tuple(record for records in found for record in records))
+
+
+def _pairs(option: str, texts: Sequence[str] | None) -> dict[str, str]:
+    """``NAME=VALUE`` -> a mapping."""
+    found = {}
+    for text in texts or ():
+        name, sign, value = (part.strip() for part in text.partition("="))
+        if not (name and sign and value):
+            raise FileFormatError(f"{option} {text!r}: write NAME=VALUE.")
+        found[name] = value
+    return found
+
+
+def _job(scene: Path, records: Records, effects: Sequence[Path], reading: Mapping[str, Any]) -> dict[str, Any]:
+    """What is diagnosed, so that only the same is gone on with."""
+    files = {"scene": scene, **{f"effects {path.name}": path for path in effects}}
+    return {
+        "files": {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in files.items()},
+        "records": {record.name: record.sha256 for record in records},
+        "reading": dict(reading),
+    }
+
+
+def _begin(work: Path, job: Mapping[str, Any], resume: bool) -> Path:
+    """The folder of unfinished work, empty or holding the same job.
+
+    Raises FileFormatError where it holds another job, or the same one that is not to be gone on with.
+    """
+    file = work / JOB
+    if file.is_file():
+        if not resume:
+            raise FileFormatError(
+                f"{work} holds a diagnosis that was not finished: go on with --resume, delete that folder, or choose another --out."
+            )
+        try:
+            same = json_text.loads(file.read_text("utf-8")) == job
+        except ValueError:
+            same = False
+        if not same:
+            raise FileFormatError(
+                f"{work} holds a diagnosis of another scene, other records or other effects (or they have changed since):"
+                " delete that folder, or choose another --out."
+            )
+        return work
+    write_text(file, json_text.dumps(job, indent=2) + "\n")
+    return work

@@ -1,0 +1,235 @@
+"""Where in the operating range the gap is: at which speed, torque, direction, order, frequency and time.
+
+Each bin holds the mean square of the whitened residuals minus 1, which noise alone would give.  Speed, torque and angle
+are those of the fitted model.  Orders are counted per turn of the reference shaft: Fourier sums over the angle in
+windows of whole turns, so that a slow and a fast stretch of the same ripple fall into one bin.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.locate.motion import Motion, motion_of
+from hdrive_mbs.diagnosis.locate.spectra import windowed
+from hdrive_mbs.diagnosis.result import DomainBin
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.network.elements import Connection
+
+FloatArray = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+PARTS = 8
+"""Bins of the speed; a torque of either sign has one more, so that one lies about zero."""
+TIMES = 12
+"""Bins of the time."""
+REST = 0.02
+"""Of the greatest speed: below it a shaft counts as at rest or turning round."""
+ORDERS, STEP, TURNS = 24, 4, 8
+"""Highest order, steps of an order at which it is looked at, and turns of a window."""
+WINDOW = 1024
+"""Samples of a window of the frequency bins."""
+CLEAR = 5.0
+"""Standard deviations of the mean square of noise above which a bin's excess is clear."""
+PEAK = 3.0
+"""Times the larger of the two beside it that an order must be to stand out."""
+MOST, FEW = 0.6, 0.35
+"""The gap is concentrated where more than this share of its energy lies in less than this share of the samples."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Stretch:
+    """One trial: what happens at its samples, and residuals of both models by column, (columns, samples); 0 where not used."""
+
+    times: FloatArray
+    speed: FloatArray
+    angle: FloatArray
+    torque: FloatArray
+    used: Mask
+    before: FloatArray
+    after: FloatArray
+    every: float
+
+
+def domain_map(simulator: Simulator, null: Fitted, claimed: Fitted | None = None) -> tuple[DomainBin, ...]:
+    """The gap of the refitted nominal model by operating range, and what a claimed cause leaves of it (nan without one).
+
+    null, claimed : fitted on this simulator
+    """
+    stretches = [_stretch(simulator, null, claimed, k) for k in range(len(simulator.trials))]
+    fastest = max(float(np.max(np.abs(item.speed))) for item in stretches)
+    found: list[DomainBin] = []
+    if fastest > 0.0:
+        found += _binned("speed", "rad/s", stretches, lambda item: np.abs(item.speed), np.linspace(0.0, fastest, PARTS + 1))
+    largest = max(float(np.max(np.abs(item.torque))) for item in stretches)
+    if largest > 0.0:
+        negative = min(float(np.min(item.torque)) for item in stretches) < -0.1 * largest
+        edges = np.linspace(-largest, largest, PARTS + 2) if negative else np.linspace(0.0, largest, PARTS + 1)
+        found += _binned("torque", "N m", stretches, lambda item: item.torque if negative else np.abs(item.torque), edges)
+    if fastest > 0.0:
+        edges = np.array([-fastest, -REST * fastest, REST * fastest, fastest])
+        found += _binned("direction", "rad/s", stretches, lambda item: item.speed, edges)
+        found += _orders(stretches)
+    found += _frequencies(stretches)
+    longest = max(float(item.times[-1] + item.every) for item in stretches)
+    found += _binned("time", "s", stretches, lambda item: item.times, np.linspace(0.0, longest, TIMES + 1))
+    return tuple(found)
+
+
+def _stretch(simulator: Simulator, null: Fitted, claimed: Fitted | None, k: int) -> _Stretch:
+    motion = motion_of(simulator, k, null.hypothesis, null.z)
+    each = simulator.every
+    spans = [segment.span for segment in simulator.segments if segment.trial == k]
+    used = np.array([simulator.used[span] for span in spans])
+    before = np.array([null.residuals[span] for span in spans]) * used
+    after = np.full(before.shape, np.nan) if claimed is None else np.array([claimed.residuals[span] for span in spans]) * used
+    speed, angle = _reference(motion)
+    torque = _torque(motion)
+    trial = simulator.trials[k]
+    return _Stretch(trial.times[::each], speed[::each], angle[::each], torque[::each], used, before, after, trial.every * each)
+
+
+def _reference(motion: Motion) -> tuple[FloatArray, FloatArray]:
+    """Speed and angle of the shaft of the motor, in its true sense."""
+    network, times = motion.network, motion.trial.times
+    turning = [(body.name, body.sense, body.ratio) for body in network.bodies if not body.lateral]
+    given = [(item.name, item.sense, item.ratio) for item in network.motions if item.name != "ground"]
+    for name, sense, ratio in (*given, *turning):
+        if abs(ratio) == 1.0:
+            if f"speed:{name}" in motion.values:
+                return sense * motion.values[f"speed:{name}"], sense * motion.values[f"angle:{name}"]
+            moment, shape = network.moment(times, {}, {}, {}), times.shape
+            speed, angle = (np.broadcast_to(np.asarray(v, float), shape) for v in (moment.speed(name), moment.angle(name)))
+            return sense * speed, sense * angle
+    return np.zeros(len(times)), np.zeros(len(times))
+
+
+def _torque(motion: Motion) -> FloatArray:
+    """Of the shaft or gear that carries the largest one."""
+    known = {channel.name for channel in motion.network.channels}
+    names = [f"{item.name}.torque" for item in motion.network.elements if isinstance(item, Connection) and item.flanges]
+    found = [motion.reading(name) for name in names if name in known]
+    return max(found, key=lambda values: float(np.mean(values**2)), default=np.zeros(motion.trial.samples))
+
+
+def _binned(
+    over: str, unit: str, stretches: Sequence[_Stretch], value: Callable[[_Stretch], FloatArray], edges: FloatArray
+) -> Iterator[DomainBin]:
+    count, before, after = (np.zeros(len(edges) - 1) for _ in range(3))
+    for item in stretches:
+        at = np.clip(np.searchsorted(edges, value(item), side="right") - 1, 0, len(edges) - 2)
+        count += np.bincount(at, item.used.sum(axis=0), minlength=len(count))
+        before += np.bincount(at, (item.before**2).sum(axis=0), minlength=len(count))
+        after += np.bincount(at, (item.after**2).sum(axis=0), minlength=len(count))
+    for k in np.flatnonzero(count):
+        yield _bin(over, unit, edges[k], edges[k + 1], before[k], after[k], count[k])
+
+
+def _bin(over: str, unit: str, low: float, high: float, before: float, after: float, count: float) -> DomainBin:
+    return DomainBin(
+        over=over, unit=unit, low=float(low), high=float(high), excess=before / count - 1.0, after=after / count - 1.0, samples=int(count)
+    )
+
+
+def _frequencies(stretches: Sequence[_Stretch]) -> Iterator[DomainBin]:
+    """Octaves up to half the sample rate."""
+    every = min(item.every for item in stretches)
+    lowest = max(2.0 * math.pi / (_window(item) * item.every) for item in stretches)
+    edges = [0.0, lowest]
+    while 1.5 * edges[-1] < math.pi / every:
+        edges.append(min(2.0 * edges[-1], math.pi / every))
+    count, before, after = (np.zeros(len(edges) - 1) for _ in range(3))
+    for item in stretches:
+        window = _window(item)
+        bins = window // 2
+        at = np.searchsorted(edges, 2.0 * np.pi * (np.arange(bins) + 0.5) / (window * item.every), side="right") - 1
+        at = np.clip(at, 0, len(count) - 1)
+        for total, rows in ((before, item.before), (after, item.after)):
+            total += np.bincount(at, np.sum(np.abs(windowed(rows, window, bins)) ** 2, axis=(0, 1)), minlength=len(count))
+        count += np.bincount(at, minlength=len(count)) * float(item.used.sum()) / bins
+    for k in np.flatnonzero(count):
+        yield _bin("frequency", "rad/s", edges[k], edges[k + 1], before[k], after[k], count[k])
+
+
+def _window(item: _Stretch) -> int:
+    return min(WINDOW, len(item.times) // 4 // 2 * 2)
+
+
+def _orders(stretches: Sequence[_Stretch]) -> Iterator[DomainBin]:
+    """Below half an order, then orders 1, 2, ... of the reference shaft, each with what lies up to half an order beside it."""
+    grid = STEP * ORDERS + STEP // 2
+    count, before, after = (np.zeros(grid) for _ in range(3))
+    for item in stretches:
+        turned = np.cumsum(np.abs(np.diff(item.angle, prepend=item.angle[0]))) / (2.0 * np.pi)
+        number = np.floor(turned / TURNS).astype(int)
+        first = np.flatnonzero(np.diff(number, prepend=-1))[:-1]  # the last window is not full
+        last = np.append(first[1:], len(number) if not len(first) else np.flatnonzero(number == number[-1])[0])
+        if not len(first):
+            continue
+        end, lengths = int(last[-1]), last - first
+        fastest = np.maximum.reduceat(np.abs(item.speed[:end]), first)
+        turning = np.exp(-2j * np.pi * turned[:end] / STEP)
+        factor = np.ones(end, complex)
+        for k in range(1, grid):
+            factor = factor * turning
+            seen = fastest * k / STEP < 0.8 * np.pi / item.every
+            if not seen.any():
+                break
+            for total, rows in ((before, item.before), (after, item.after)):
+                sums = np.add.reduceat(rows[:, :end] * factor, first, axis=1)
+                total[k] += float(np.sum((np.abs(sums) ** 2 / np.maximum(lengths, 1))[:, seen]))
+            count[k] += len(item.before) * int(seen.sum())
+    for order in range(ORDERS + 1):
+        near = np.arange(max(1, STEP * order - STEP // 2), STEP * order + STEP // 2)
+        if count[near].sum() > 0.0:
+            yield _bin("order", "1", max(order - 0.5, 0.0), order + 0.5, before[near].sum(), after[near].sum(), count[near].sum())
+
+
+def concentrated(bins: Sequence[DomainBin]) -> tuple[str, ...]:
+    """In words, where most of the gap lies in few of the samples: "at speeds above 80 rad/s", "at order 2 of the motor shaft"."""
+    found = []
+    for over in dict.fromkeys(item.over for item in bins):
+        own = [item for item in bins if item.over == over]
+        clear = np.array([item.excess > CLEAR * math.sqrt(2.0 / item.samples) for item in own])
+        energy = np.array([item.excess * item.samples for item in own]) * clear
+        if over == "order":
+            found += _peaks(own, clear)
+        elif clear.any():
+            samples = np.array([float(item.samples) for item in own])
+            order = np.argsort([-item.excess for item in own])
+            needed = int(np.searchsorted(np.cumsum(energy[order]), MOST * energy.sum())) + 1
+            chosen = sorted(order[:needed].tolist())
+            in_row = chosen == list(range(chosen[0], chosen[-1] + 1))
+            if samples[chosen].sum() < FEW * samples.sum() and in_row:
+                found.append(_words(over, [own[k] for k in chosen], own))
+    return tuple(found)
+
+
+def _peaks(own: Sequence[DomainBin], clear: Mask) -> list[str]:
+    """Orders that stand out from those beside them, largest first."""
+    excess = np.array([item.excess for item in own])
+    beside = np.maximum(np.append(excess[1:], excess[-2:-1]), np.insert(excess[:-1], 0, np.inf))
+    at = [k for k in np.argsort(-excess) if clear[k] and excess[k] > PEAK * max(float(beside[k]), 0.0)]
+    orders = [f"{(own[k].low + own[k].high) / 2.0:.0f}" for k in at[:3]]
+    return [f"at order {' and '.join(orders)} of the motor shaft"] if orders else []
+
+
+def _words(over: str, chosen: Sequence[DomainBin], own: Sequence[DomainBin]) -> str:
+    low, high, unit = chosen[0].low, chosen[-1].high, chosen[0].unit
+    if over == "direction":
+        return "at reversals and at rest" if low < 0.0 < high else "when turning backward" if high <= 0.0 else "when turning forward"
+    if over == "torque" and low < 0.0 < high and len(chosen) == 1:
+        return "where the torque crosses zero"
+    if over == "time":
+        return f"from {low:.3g} to {high:.3g} {unit}"
+    name = {"speed": "speeds", "torque": "torques", "frequency": "frequencies"}[over]
+    if chosen[-1] is own[-1]:
+        return f"at {name} above {low:.3g} {unit}"
+    if chosen[0] is own[0]:
+        return f"at {name} below {high:.3g} {unit}"
+    return f"at {name} from {low:.3g} to {high:.3g} {unit}"

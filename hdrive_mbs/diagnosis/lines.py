@@ -1,0 +1,166 @@
+"""Parameter sets of a hypothesis as compiled lines, each built once for all trials that differ in their inputs alone."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from dataclasses import replace
+
+from hdrive_mbs.compiled.equilibrium import equilibria
+from hdrive_mbs.compiled.idle_coordinates import without_idle
+from hdrive_mbs.compiled.line import CompiledLine
+from hdrive_mbs.compiled.program import Program
+from hdrive_mbs.compiled.structure import Structure
+from hdrive_mbs.compiled.time_inputs import TimeInput
+from hdrive_mbs.diagnosis.following import following
+from hdrive_mbs.diagnosis.hypothesis import FloatArray, Hypothesis
+from hdrive_mbs.diagnosis.trial import Trial
+from hdrive_mbs.errors import LawError, ParameterError
+from hdrive_mbs.network.network import Network
+from hdrive_mbs.scene import Scene
+
+Inputs = tuple[TimeInput, ...]
+
+
+class Start:
+    """A line with the angles at which it starts."""
+
+    def __init__(self, line: CompiledLine, angles: dict[str, float]) -> None:
+        self.line, self.angles = line, angles
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What its run depends on."""
+        program = self.line.program
+        return program.structure, program.constants.tobytes(), *(table.values.tobytes() for table in program.tables), program.inputs
+
+
+class Lines:
+    """Compiled lines of trials.
+
+    Records of one bench differ in tables of time alone: their equations are recorded for one of them, and the others
+    take their own tables.  Whether that is right is checked on the first parameter set of each form of equations:
+    structure and numbers have to be equal, and no searched parameter may sit in a part in which the scenes differ.
+    """
+
+    def __init__(self, trials: Sequence[Trial]) -> None:
+        self._trials = tuple(trials)
+        self._families: list[list[int]] = []
+        for k, trial in enumerate(self._trials):
+            for family in self._families:
+                if _alike(self._trials[family[0]].scene, trial.scene):
+                    family.append(k)
+                    break
+            else:
+                self._families.append([k])
+        # the scene that most trials of a family have comes first: its network serves all of its views
+        for family in self._families:
+            scenes = [self._trials[k].scene for k in family]
+            family.sort(key=lambda k: -sum(scene is self._trials[k].scene for scene in scenes))  # noqa: B023
+        self._known: dict[tuple[int, Structure], tuple[Inputs, Inputs] | None] = {}
+
+    def at(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[list[Start | None]]:
+        """For each trial the line at each point; None where values do not go together."""
+        found: list[list[Start | None]] = [[None] * len(points) for _ in self._trials]
+        for family in self._families:
+            for some in self._apart(family, hypothesis, points):
+                for k, starts in self._family(some, hypothesis, points).items():
+                    found[k] = starts
+        return found
+
+    def _apart(self, family: list[int], hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[list[int]]:
+        """The family, or each member alone where a searched parameter sits in what tells them apart."""
+        first = self._trials[family[0]].scene
+        differing = {name for k in family for name in _differing(first, self._trials[k].scene)}
+        searched = {path.partition(".")[0] for path in hypothesis.values(points[0])} if points else set()
+        return [family] if differing.isdisjoint(searched) else [[k] for k in family]
+
+    def _family(self, family: list[int], hypothesis: Hypothesis, points: Sequence[FloatArray]) -> dict[int, list[Start | None]]:
+        scene = self._trials[family[0]].scene
+        networks = [_network(hypothesis, scene, point) for point in points]
+        bases: dict[tuple[object, ...], tuple[int, list[CompiledLine | None]]] = {}
+        resting: list[dict[str, float]] | None = None
+        found: dict[int, list[Start | None]] = {}
+        for k in family:
+            trial = self._trials[k]
+            view = (*sorted(trial.motions), "/", *_channels(trial))
+            if view not in bases:
+                bases[view] = k, [None if network is None else _compiled(network, trial) for network in networks]
+            of, lines = bases[view]
+            if of != k or trial.scene is not scene:
+                lines = [self._taking(k, line, hypothesis, point) for line, point in zip(lines, points, strict=True)]
+            if trial.settled and resting is None:
+                resting = _resting(lines)
+            rest = resting if trial.settled and resting is not None else [{} for _ in lines]
+            found[k] = [
+                None if line is None else Start(line, {**angles, **trial.angles}) for line, angles in zip(lines, rest, strict=True)
+            ]
+        return found
+
+    def _taking(self, k: int, base: CompiledLine | None, hypothesis: Hypothesis, point: FloatArray) -> CompiledLine | None:
+        """The line of trial k, from that of another one with the same parameters if only inputs differ."""
+        if base is None:
+            return None
+        key = (k, base.structure)
+        own: CompiledLine | None = None
+        if key not in self._known:
+            own = self._own(k, hypothesis, point)
+            same = own is not None and _same(own.program, base.program)
+            self._known[key] = (base.program.inputs, own.program.inputs) if same and own is not None else None
+        known = self._known[key]
+        if known is not None and known[0] == base.program.inputs:
+            line = copy.copy(base)
+            line.program = replace(base.program, inputs=known[1])
+            return line
+        return own if own is not None else self._own(k, hypothesis, point)
+
+    def _own(self, k: int, hypothesis: Hypothesis, point: FloatArray) -> CompiledLine | None:
+        network = _network(hypothesis, self._trials[k].scene, point)
+        return None if network is None else _compiled(network, self._trials[k])
+
+
+def _resting(lines: Sequence[CompiledLine | None]) -> list[dict[str, float]]:
+    found = iter(equilibria([line for line in lines if line is not None]))
+    return [{} if line is None else next(found) for line in lines]
+
+
+def _channels(trial: Trial) -> list[str]:
+    return [trial.measured[column].channel for column in trial.columns]
+
+
+def _compiled(network: Network, trial: Trial) -> CompiledLine:
+    driven = following(network, trial.motions)
+    if driven.is_lateral:
+        driven = without_idle(driven, {**trial.angles, **{f"{name}_rate": value for name, value in trial.speeds.items()}})
+    return CompiledLine(driven, _channels(trial))
+
+
+def _network(hypothesis: Hypothesis, scene: Scene, point: FloatArray) -> Network | None:
+    try:
+        return hypothesis.scene(scene, point).network()
+    except (ParameterError, LawError):
+        return None
+
+
+def _alike(a: Scene, b: Scene) -> bool:
+    """Whether scenes may differ in the numbers of some parts alone."""
+    return (
+        a is b
+        or a.connections == b.connections
+        and a.effects == b.effects
+        and {name: type(part) for name, part in a.parts.items()} == {name: type(part) for name, part in b.parts.items()}
+    )
+
+
+def _differing(a: Scene, b: Scene) -> list[str]:
+    """Names of the parts in which scenes differ."""
+    return [] if a is b else [name for name, part in a.parts.items() if part is not b.parts[name] and part != b.parts[name]]
+
+
+def _same(a: Program, b: Program) -> bool:
+    """Whether programs differ in their inputs at most."""
+    return (
+        a.structure == b.structure
+        and bool((a.constants == b.constants).all())
+        and all(x.values.tobytes() == y.values.tobytes() for x, y in zip(a.tables, b.tables, strict=True))
+    )

@@ -1,0 +1,16 @@
+"""Where an unknown force or error sits, without knowing its law.
+
+sources       places where a force may act, as generalized forces
+motion        the run that everything is linearised about
+linear        A, B, C, D along a motion, and transfers
+spectra       residuals and their slopes as short-time spectra
+response      what a force at each place does to the columns
+likelihood    how likely the residuals are with a force at one place
+locate        all places compared
+latent_force  the course of the force
+"""
+
+from hdrive_mbs.diagnosis.locate.latent_force import LatentForce
+from hdrive_mbs.diagnosis.locate.locate import NOWHERE, Localiser, locate
+
+__all__ = ["NOWHERE", "LatentForce", "Localiser", "locate"]

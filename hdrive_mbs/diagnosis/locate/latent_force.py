@@ -1,0 +1,70 @@
+"""The course of an unknown force, for pictures: against speed, torque or angle it shows a friction curve or a ripple."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.diagnosis.locate.motion import Motion
+from hdrive_mbs.diagnosis.locate.response import Response
+from hdrive_mbs.diagnosis.locate.spectra import Spectra, joined
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LatentForce:
+    """An unknown force at a place in one trial, or the error of a sensor.
+
+    at, way : place and direction;  record : name of the trial;  unit : of the force
+    times : s;  force : generalized force that the model lacks, or reading minus model for a sensor
+    angle, speed : of the place, summed along the force: those of a body, or how far the ends of a connection are turned against
+        each other, in the sense in which the force does work;  torque : of the connection in the model, nan for other places
+    """
+
+    at: str
+    way: str
+    record: str
+    unit: str
+    times: FloatArray
+    force: FloatArray
+    angle: FloatArray
+    speed: FloatArray
+    torque: FloatArray
+
+
+def most_probable(transfer: ComplexArray, residuals: ComplexArray, strength: FloatArray) -> ComplexArray:
+    """F = (H^H H + 1/s^2)^-1 H^H Y in every window and bin, shape (windows, bins, d).
+
+    residuals : Y, shape (windows, bins, columns);  strength : s^2, (windows, bins), 0 where there is no force
+    """
+    back = np.swapaxes(transfer.conj(), 2, 3)
+    system = strength[..., None, None] * (back @ transfer) + np.eye(transfer.shape[3])
+    return np.asarray(np.linalg.solve(system, strength[..., None, None] * (back @ residuals[..., None]))[..., 0])
+
+
+def latent_force(
+    motion: Motion, spectra: Spectra, response: Response, at: str, residuals: ComplexArray, strength: FloatArray
+) -> list[LatentForce]:
+    """The most probable forces of every window and band, put together; see ``most_probable``."""
+    source, trial = response.sources[at], motion.trial
+    found = most_probable(response.of[at], residuals, strength)
+    nothing = np.full(trial.samples, np.nan)
+    known = {channel.name for channel in motion.network.channels}
+    made = []
+    for k, way in enumerate(source.along or {"error": {}}):
+        factors = source.along.get(way, {})
+        moved = [sum((f * motion.values[f"{kind}:{n}"] for n, f in factors.items()), np.zeros(trial.samples)) for kind in ("angle", "speed")]
+        if not factors:
+            moved = [motion.reading(at), nothing]
+        torque = motion.reading(f"{at}.torque") if way == "torsion" and f"{at}.torque" in known else nothing
+        made.append(
+            LatentForce(
+                at=at, way=way, record=trial.name, unit=source.unit, times=trial.times,
+                force=joined(found[..., k], spectra.window, trial.samples), angle=moved[0], speed=moved[1], torque=torque,
+            )
+        )  # fmt: skip
+    return made

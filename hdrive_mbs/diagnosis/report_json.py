@@ -1,0 +1,129 @@
+"""The answer as JSON, for programs: SI units, frequencies in rad/s, null for what is not a finite number."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hdrive_mbs.diagnosis import sentences
+from hdrive_mbs.diagnosis.result import VERDICTS, Diagnosis
+from hdrive_mbs.errors import FileFormatError
+from hdrive_mbs.scene import Scene
+from hdrive_mbs.scene_file import scene_to_dict
+from hdrive_mbs.writing import write_text
+
+SCHEMA = "hdrive-mbs diagnosis"
+VERSION = 1
+"""Rises when a key goes or changes its meaning; new keys leave it."""
+SERIES = ("traces", "forces", "loops", "order_maps")
+"""Fields that hold long arrays."""
+
+
+def report_document(diagnosis: Diagnosis, *, series: bool = False) -> dict[str, Any]:
+    """The answer as plain data: dicts, lists, texts, finite numbers, None.
+
+    series : with the curves of the pictures too
+    """
+    document: dict[str, Any] = {
+        "schema": SCHEMA,
+        "schema_version": VERSION,
+        "units": "SI; speeds and frequencies in rad/s",
+        "scene": diagnosis.scene.name,
+        "records": list(diagnosis.records),
+        "verdict": diagnosis.verdict,
+        "verdict_text": VERDICTS.get(diagnosis.verdict, diagnosis.verdict),
+        "summary": sentences.verdict(diagnosis),
+        "causes": diagnosis.causes,
+        "indistinguishable": [{"effect": effect, "at": at} for effect, at in diagnosis.indistinguishable],
+        "ranking": diagnosis.ranking,
+        "where": diagnosis.where,
+        "gaps": [{**_plain(gap), "in_unit": _in_unit(gap)} for gap in diagnosis.gaps],
+        "closed": diagnosis.closed if diagnosis.gaps else None,
+        "closed_by_refit": diagnosis.closed_by_refit if diagnosis.gaps else None,
+        "parameters": [{**_plain(item), "moved_sigmas": sentences.moved(item)} for item in diagnosis.parameters],
+        "domain": diagnosis.domain,
+        "next_records": [
+            {
+                "record": item.record,
+                "first": {"effect": item.first[0], "at": item.first[1]},
+                "second": {"effect": item.second[0], "at": item.second[1]},
+                "detectability": item.detectability,
+                "enough": sentences.SEPARABLE,
+            }
+            for item in diagnosis.next_records
+        ],
+        "notes": diagnosis.notes,
+        "improved_scene": _scene(diagnosis.improved),
+        "seconds": diagnosis.seconds,
+        "versions": diagnosis.versions,
+    }
+    if series:
+        document |= {name: getattr(diagnosis, name) for name in SERIES}
+    plain = _plain(document)
+    assert isinstance(plain, dict)
+    return plain
+
+
+def write_report_json(diagnosis: Diagnosis, path: str | os.PathLike[str], *, series: bool = False) -> Path:
+    """Write it, whole or not at all."""
+    return write_text(path, json.dumps(report_document(diagnosis, series=series), indent=2, allow_nan=False) + "\n")
+
+
+def read_report_json(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """The data of a written report; null is None.
+
+    Raises FileFormatError for a file that cannot be read, is no such report, or is of a later schema.
+    """
+    try:
+        document = json.loads(Path(path).read_text("utf-8"))
+    except OSError as error:
+        raise FileFormatError(f"{path}: cannot be read ({error.strerror or error}).") from error
+    except (ValueError, RecursionError) as error:
+        raise FileFormatError(f"{path} cannot be parsed: {error}.") from error
+    if not isinstance(document, dict) or document.get("schema") != SCHEMA:
+        raise FileFormatError(f"{path} is no report of a diagnosis: 'schema' must be {SCHEMA!r}.")
+    version = document.get("schema_version")
+    if not isinstance(version, int) or version > VERSION:
+        raise FileFormatError(f"{path} has schema_version {version!r}; this package reads up to {VERSION}. Install a later hdrive-mbs.")
+    return document
+
+
+def _in_unit(gap: Any) -> dict[str, Any]:
+    """Root mean squares in the column's unit; nothing for all columns together, which have no common unit."""
+    if not gap.column:
+        return {}
+    steps = {name: getattr(gap, name) for name in ("nominal", "refit", "effect")}
+    scaled = {name: {key: gap.noise * value for key, value in dataclasses.asdict(item).items()} for name, item in steps.items()}
+    return {"unit": gap.unit, **scaled, "floor": gap.noise * gap.floor}
+
+
+def _scene(scene: Scene) -> dict[str, Any] | None:
+    try:
+        return scene_to_dict(scene)
+    except FileFormatError:
+        return None  # it holds Python functions; the scene itself is diagnosis.improved
+
+
+def _plain(value: Any) -> Any:
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return {item.name: _plain(getattr(value, item.name)) for item in dataclasses.fields(value)}
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    if isinstance(value, np.integer):
+        return int(value)
+    if isinstance(value, (float, np.floating)):
+        return float(value) if math.isfinite(value) else None
+    return value

@@ -1,0 +1,180 @@
+"""A diagnosis in words: what the text report and the page in a browser both say."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from hdrive_mbs.diagnosis.readable import digits, interval, listed, named, percent, probability, with_unit
+from hdrive_mbs.diagnosis.result import VERDICTS, Cause, Diagnosis, DomainBin, Estimate, Place, Separation
+
+SEPARABLE = 25.0
+"""Detectability from which two causes can be told apart."""
+EVEN = 1.5
+"""A bin with less than this many times its share of the samples stands out from nothing."""
+MOVED = 1.0
+"""Standard deviations of its tolerance from which a parameter is said to have moved."""
+
+
+def label(effect: str, at: str) -> str:
+    """``coulomb friction at load``; ``parameter gear stiffness``; ``no cause``."""
+    if effect == "none":
+        return "no cause"
+    if effect == "unknown":
+        return "nothing in the library"
+    if effect == "parameter":
+        return f"parameter {named(at)}"
+    return f"{named(effect)} at {at}" if at else named(effect)
+
+
+def verdict(diagnosis: Diagnosis) -> str:
+    """The answer in one sentence."""
+    claimed = [label(cause.effect, cause.at) for cause in diagnosis.causes]
+    words = VERDICTS.get(diagnosis.verdict, diagnosis.verdict)
+    if not claimed:
+        return f"{words[0].upper()}{words[1:]}."
+    if len(claimed) > 1:
+        return f"{'Two' if len(claimed) == 2 else str(len(claimed))} causes: {listed(claimed)}."
+    return f"{words[0].upper()}{words[1:]}: {claimed[0]}."
+
+
+def confidence(diagnosis: Diagnosis) -> str:
+    """How sure that is."""
+    if diagnosis.causes:
+        return "Probability " + listed([probability(cause.probability) for cause in diagnosis.causes]) + "."
+    none = next((item for item in diagnosis.ranking if item.effect == diagnosis.verdict), None)
+    return f"Probability {probability(none.probability)}." if none is not None else ""
+
+
+def ambiguity(diagnosis: Diagnosis) -> str:
+    """What these records cannot tell from the claim; empty if everything can be told apart."""
+    own = {(cause.effect, cause.at) for cause in diagnosis.causes}
+    others = [label(*item) for item in diagnosis.indistinguishable if item not in own]
+    if not others:
+        return ""
+    claimed = listed([label(cause.effect, cause.at) for cause in diagnosis.causes]) if own else "the claim"
+    return f"These records cannot tell {claimed} from {listed(others, 'or')}."
+
+
+def gap_sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """How large the gap is, and how far it shrinks."""
+    if not diagnosis.gaps:
+        return ("No stretch was held out, so the gap was not measured.",)
+    gap = diagnosis.gap
+    claimed = bool(diagnosis.causes)
+    steps = [f"the nominal model is off by {_size(gap.nominal.value)}", f"with refitted parameters by {_size(gap.refit.value)}"]
+    if claimed:
+        steps.append(f"with the cause by {_size(gap.effect.value)}")
+    noise = f"noise alone gives {digits(gap.floor, 3)}"
+    first = f"On stretches that no fit saw, in standard deviations of the noise (rms): {listed(steps)}; {noise}."
+    if math.isfinite(gap.nominal.value) and gap.nominal.value <= gap.floor:
+        return (first, "The nominal model is not above the noise, so there is no gap to close.")
+    parts = []
+    if math.isfinite(diagnosis.closed_by_refit):
+        parts.append(f"refitting alone closes {percent(diagnosis.closed_by_refit)}")
+    if claimed and math.isfinite(diagnosis.closed):
+        parts.append(f"the cause closes {percent(diagnosis.closed)}")
+    return (first, f"Of the gap's energy above the noise {listed(parts)}.") if parts else (first,)
+
+
+def _size(value: float) -> str:
+    return digits(value, 3) if math.isfinite(value) else "an amount that could not be computed"
+
+
+def where(place: Place) -> str:
+    """What a force at a place would explain."""
+    text = f"{place.at}: probability {probability(place.probability)}; an unknown signal there explains {percent(place.share)} of the gap"
+    return text + (f"; these records cannot tell it from {listed(place.tied, 'or')}" if place.tied else "")
+
+
+def moved(estimate: Estimate) -> float:
+    """How far a nominal parameter went, in standard deviations of its tolerance; nan where it has none."""
+    before, after, sigma = estimate.nominal, estimate.value, estimate.tolerance
+    if not (math.isfinite(before) and math.isfinite(after) and sigma > 0.0 and before != 0.0):
+        return math.nan
+    ratio = after / before
+    return math.log(ratio) / sigma if ratio > 0.0 else (ratio - 1.0) / sigma
+
+
+def moved_parameters(diagnosis: Diagnosis) -> list[tuple[Estimate, float]]:
+    """Nominal parameters that went further than ``MOVED``, the furthest first."""
+    pairs = [(item, moved(item)) for item in diagnosis.parameters]
+    return sorted(((item, z) for item, z in pairs if abs(z) > MOVED), key=lambda pair: -abs(pair[1]))
+
+
+def domain_sentences(bins: Sequence[DomainBin]) -> tuple[str, ...]:
+    """Where in the operating range the misfit of the refitted nominal model lies, one sentence for each quantity."""
+    return tuple(_domain(over, [item for item in bins if item.over == over]) for over in dict.fromkeys(item.over for item in bins))
+
+
+def bin_name(item: DomainBin) -> str:
+    """The range of a bin in words."""
+    if item.over == "direction":
+        return "at rest and at reversals" if item.low < 0.0 < item.high else "backward" if item.high <= 0.0 else "forward"
+    unit = "" if item.unit in ("", "1") else f" {item.unit}"
+    if math.isinf(item.high):
+        return f"above {item.low:.3g}{unit}"
+    if math.isinf(item.low):
+        return f"below {item.high:.3g}{unit}"
+    return f"{item.low:.3g} to {item.high:.3g}{unit}"
+
+
+def _domain(over: str, bins: Sequence[DomainBin]) -> str:
+    energies = [max(item.excess, 0.0) * item.samples if math.isfinite(item.excess) else 0.0 for item in bins]
+    total, samples = sum(energies), sum(item.samples for item in bins)
+    if not total > 0.0 or not samples:
+        return f"Over {over}: nothing above the noise."
+    k = max(range(len(bins)), key=lambda i: bins[i].excess if energies[i] > 0.0 else -math.inf)
+    worst, share, part = bins[k], energies[k] / total, bins[k].samples / samples
+    if share < EVEN * part:
+        return f"Over {over}: spread evenly (largest {bin_name(worst)}, {percent(share)} of the misfit in {percent(part)} of the samples)."
+    after = f", with the cause {digits(max(worst.after, 0.0), 3)}" if math.isfinite(worst.after) else ""
+    return (
+        f"Over {over}: largest {bin_name(worst)}, where {percent(part)} of the samples hold {percent(share)} of the misfit"
+        f" (mean square above the noise {digits(worst.excess, 3)} times the noise's{after})."
+    )
+
+
+def next_sentences(separations: Iterable[Separation]) -> tuple[str, ...]:
+    """What to measure next, best first."""
+    found = []
+    for item in separations:
+        pair = f"{label(*item.first)} from {label(*item.second)}"
+        size = f"detectability {digits(item.detectability, 3)}"
+        if item.detectability >= SEPARABLE:
+            found.append(f"Record {item.record!r} would tell {pair} ({size}; {SEPARABLE:g} is enough).")
+        else:
+            found.append(f"Record {item.record!r} would not tell {pair} ({size}; {SEPARABLE:g} is needed).")
+    return tuple(found)
+
+
+def estimate_text(estimate: Estimate) -> str:
+    """Value with interval, or why there is none."""
+    if not estimate.identifiable:
+        return f"not identifiable from these records (best {with_unit(estimate.value, estimate.unit, 2)})"
+    return interval(estimate.value, estimate.low, estimate.high, estimate.unit)
+
+
+def law_line(cause: Cause) -> str:
+    """Law and what it is known by."""
+    law = f"law {cause.law}, {cause.kind}" if cause.law else cause.kind
+    return f"{law}; seen in a record as: {cause.signature}" if cause.signature else law
+
+
+def title(diagnosis: Diagnosis) -> str:
+    """What was diagnosed, by what."""
+    number = len(diagnosis.records)
+    return f"Diagnosis of {diagnosis.scene.name!r} by {number} record{'s' if number != 1 else ''}: {listed(diagnosis.records)}"
+
+
+def unmoved(diagnosis: Diagnosis) -> str:
+    """Names of the nominal parameters that stayed within their tolerance; empty if there is none."""
+    moved_ones = [item for item, _ in moved_parameters(diagnosis)]
+    still = [item.name for item in diagnosis.parameters if all(item is not other for other in moved_ones)]
+    return f"Moved by less than {MOVED:g} sigma of their tolerance: {listed(still)}." if still else ""
+
+
+def made(diagnosis: Diagnosis) -> str:
+    """Time it took, and versions."""
+    versions = ", ".join(f"{name} {version}" for name, version in diagnosis.versions.items())
+    return f"{digits(diagnosis.seconds, 3)} s." + (f" {versions}." if versions else "")

@@ -1,0 +1,83 @@
+"""Measured and simulated columns side by side, thinned for pictures."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.compiled.line import CompiledLine
+from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.result import Trace
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.trial import Trial
+from hdrive_mbs.errors import HdriveError
+from hdrive_mbs.network.network import Network
+
+FloatArray = npt.NDArray[np.float64]
+
+POINTS = 3000
+"""Most points of a trace."""
+
+
+def traces(simulator: Simulator, nominal: Fitted, refit: Fitted, effect: Fitted) -> tuple[Trace, ...]:
+    """Every column of every trial with the three models, an unknown offset taken out of each."""
+    models = [simulator.columns(item.hypothesis, item.z) for item in (nominal, refit, effect)]
+    found = []
+    for number, trial in enumerate(simulator.trials):
+        network = trial.scene.network()
+        units = {channel.name: channel.unit for channel in network.channels}
+        thin = slice(None, None, max(1, -(-trial.samples // POINTS)))
+        where = _operating_point(simulator, trial, effect)
+        for column, values in trial.columns.items():
+            measured = trial.measured[column]
+            simulated = [model[number].get(column, np.full(trial.samples, np.nan)) for model in models]
+            moved = [own + (_offset(values - own, trial) if measured.offset > 0.0 else 0.0) for own in simulated]
+            found.append(
+                Trace(
+                    record=trial.name,
+                    column=column,
+                    unit=units[measured.channel],
+                    noise=measured.total,
+                    times=trial.times[thin],
+                    measured=values[thin],
+                    nominal=moved[0][thin],
+                    refit=moved[1][thin],
+                    effect=moved[2][thin],
+                    held_out=trial.held_out[thin],
+                    **{name: history[thin] for name, history in where.items()},
+                )
+            )
+    return tuple(found)
+
+
+def _offset(left: FloatArray, trial: Trial) -> float:
+    """What is left of an offset on average, over the samples of the fit."""
+    used = np.isfinite(left) & ~trial.held_out
+    return float(left[used].mean()) if used.any() else 0.0
+
+
+def _operating_point(simulator: Simulator, trial: Trial, fitted: Fitted) -> dict[str, FloatArray]:
+    """Speed and angle of the first place that turns, and the torque of the last connection, during a trial."""
+    try:
+        network = fitted.hypothesis.scene(trial.scene, fitted.z).network()
+        wanted = _channels(network)
+        run = CompiledLine(network, list(wanted.values())).run(
+            trial.samples, trial.every, step=simulator.step, angles=trial.angles, speeds=trial.speeds
+        )
+    except HdriveError:
+        return {}
+    return {name: run.values[channel] for name, channel in wanted.items()}
+
+
+def _channels(network: Network) -> dict[str, str]:
+    known = [channel.name for channel in network.channels]
+    turning = [*(motion.name for motion in network.motions), *(body.name for body in network.bodies if not body.lateral)]
+    found = {}
+    for what in ("speed", "angle"):
+        name = next((f"{place}.{what}" for place in turning if place != "ground" and f"{place}.{what}" in known), None)
+        if name is not None:
+            found[what] = name
+    torques = [f"{e.name}.torque" for e in network.elements if getattr(e, "flanges", None) and f"{e.name}.torque" in known]
+    if torques:
+        found["torque"] = torques[-1]
+    return found

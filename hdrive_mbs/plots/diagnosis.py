@@ -1,0 +1,85 @@
+"""The summary picture of a diagnosis: how far the gap shrinks, what causes it, where it lies, and one column before and after."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from hdrive_mbs.diagnosis import sentences
+from hdrive_mbs.diagnosis.result import Diagnosis, Trace
+from hdrive_mbs.plots.diagnosis_domain import plot_domain
+from hdrive_mbs.plots.diagnosis_gap import plot_gap
+from hdrive_mbs.plots.diagnosis_ranking import plot_places, plot_ranking
+from hdrive_mbs.plots.diagnosis_traces import plot_traces
+from hdrive_mbs.plots.dispatch import plot
+from hdrive_mbs.plots.look import given_or_new, house_look, new_figure, readable
+
+
+@plot.register
+def plot_diagnosis(result: Diagnosis, ax: Axes | None = None) -> Axes:
+    """Gap, ranking, places or domain, and the column that was worst off, one below the other; returns the first Axes.
+
+    With ``ax`` the gap of all records together is drawn there.
+    """
+    with house_look():
+        if ax is not None:
+            return plot_gap(result, ax, together=True) if result.gaps else plot_ranking(result, ax)
+        panels = [(name, height) for name, height, there in _panels(result) if there]
+        if not panels:
+            empty = given_or_new(None, 7.2, 1.6)
+            empty.set_axis_off()
+            empty.set_title(_title(result))
+            return empty
+        figure = new_figure(7.2, 0.8 + sum(height for _, height in panels))
+        grid = figure.add_gridspec(len(panels), 1, height_ratios=[height for _, height in panels])
+        drawn = []
+        for k, (name, _) in enumerate(panels):
+            panel = figure.add_subplot(grid[k])
+            _draw(name, result, panel)
+            drawn.append(panel)
+        figure.suptitle(_title(result), x=0.01, ha="left")
+    return drawn[0]
+
+
+def _panels(result: Diagnosis) -> tuple[tuple[str, float, bool], ...]:
+    return (
+        ("gap", 2.1, bool(result.gaps)),
+        ("ranking", 0.9 + 0.3 * min(len(result.ranking), 6), bool(result.ranking)),
+        ("places", 0.9 + 0.3 * min(len(result.where), 4), bool(result.where)),
+        ("domain", 2.0, bool(result.domain) and not result.where),
+        ("traces", 2.6, bool(result.traces)),
+    )
+
+
+def _draw(name: str, result: Diagnosis, ax: Axes) -> None:
+    if name == "gap":
+        plot_gap(result, ax, together=True)
+    elif name == "ranking":
+        plot_ranking(result, ax, top=6)
+    elif name == "places":
+        plot_places(result, ax, top=4)
+    elif name == "domain":
+        plot_domain(result, ax)
+    else:
+        worst = worst_first(result.traces)[0]
+        plot_traces(result, ax, record=worst.record, column=worst.column, residuals=True)
+        ax.set_ylabel(f"{readable(worst.column)} of\n{readable(worst.record)}:\n{ax.get_ylabel()}")
+
+
+def worst_first(traces: Sequence[Trace]) -> list[Trace]:
+    """Traces by how far the refitted nominal model is off, in noise units."""
+    return sorted(traces, key=_size, reverse=True)
+
+
+def _size(trace: Trace) -> float:
+    """How far the refitted nominal model is off, in noise units."""
+    left = (trace.measured - trace.refit) / trace.noise
+    return float(np.nanmean(left**2)) if np.isfinite(left).any() else 0.0
+
+
+def _title(result: Diagnosis) -> str:
+    said = f"{result.scene.name}: {sentences.verdict(result)} {sentences.confidence(result)} {sentences.ambiguity(result)}"
+    return textwrap.fill(said.replace("_", " "), 96)
