@@ -217,6 +217,15 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "campaign.campaign": ("Campaign",),
     "campaign.job_files": ("FinishedJob",),
     "campaign.scene_analysis": ("SceneAnalysis",),
+    "diagnosis.report_text": ("write_report",),
+    "diagnosis.report_json": ("read_report_json", "write_report_json"),
+    "plots.report_html": ("write_report_html",),
+    "plots.diagnosis_gap": ("plot_gap",),
+    "plots.diagnosis_ranking": ("plot_places", "plot_ranking"),
+    "plots.diagnosis_traces": ("plot_residual", "plot_traces"),
+    "plots.diagnosis_force": ("plot_force",),
+    "plots.diagnosis_loop": ("plot_loop",),
+    "plots.diagnosis_domain": ("plot_domain", "plot_orders"),
     "plots": ("animate", "plot", "save_figure"),
 }  # fmt: skip
 _MODULE_OF = {name: module for module, exported in _WHERE.items() for name in exported}

@@ -81,6 +81,9 @@ from hdrive_mbs.components.shaft_section import ShaftSection as ShaftSection
 from hdrive_mbs.components.simplified_section import SimplifiedSection as SimplifiedSection
 from hdrive_mbs.components.speed_controller import SpeedController as SpeedController
 from hdrive_mbs.components.tooth_errors import tooth_errors as tooth_errors
+from hdrive_mbs.diagnosis.report_json import read_report_json as read_report_json
+from hdrive_mbs.diagnosis.report_json import write_report_json as write_report_json
+from hdrive_mbs.diagnosis.report_text import write_report as write_report
 from hdrive_mbs.effects.actuator_lag import ActuatorLag as ActuatorLag
 from hdrive_mbs.effects.ball_pass import BallPass as BallPass
 from hdrive_mbs.effects.ball_pass_harmonics import BallPassHarmonics as BallPassHarmonics
@@ -216,6 +219,16 @@ from hdrive_mbs.motors.torque_speed_table import TorqueSpeedTable as TorqueSpeed
 from hdrive_mbs.plots import animate as animate
 from hdrive_mbs.plots import plot as plot
 from hdrive_mbs.plots import save_figure as save_figure
+from hdrive_mbs.plots.diagnosis_domain import plot_domain as plot_domain
+from hdrive_mbs.plots.diagnosis_domain import plot_orders as plot_orders
+from hdrive_mbs.plots.diagnosis_force import plot_force as plot_force
+from hdrive_mbs.plots.diagnosis_gap import plot_gap as plot_gap
+from hdrive_mbs.plots.diagnosis_loop import plot_loop as plot_loop
+from hdrive_mbs.plots.diagnosis_ranking import plot_places as plot_places
+from hdrive_mbs.plots.diagnosis_ranking import plot_ranking as plot_ranking
+from hdrive_mbs.plots.diagnosis_traces import plot_residual as plot_residual
+from hdrive_mbs.plots.diagnosis_traces import plot_traces as plot_traces
+from hdrive_mbs.plots.report_html import write_report_html as write_report_html
 from hdrive_mbs.quantities import arcmin as arcmin
 from hdrive_mbs.quantities import degrees as degrees
 from hdrive_mbs.quantities import mm as mm

@@ -18,6 +18,8 @@ import math
 from collections.abc import Sequence
 
 import hdrive_mbs as hm
+from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
+from hdrive_mbs.diagnosis.measured import Measured
 
 Table = tuple[Sequence[float], Sequence[float]]
 """Times [s] and values."""
@@ -94,6 +96,9 @@ RESOLUTION: dict[str, float] = {
 }
 """Steps of the columns, which are rounded after the noise is added, SI."""
 
+TOGETHER: dict[str, tuple[str, ...]] = {"flexspline_stiffness": tuple(f"flexspline_stiffness_{k}" for k in (1, 2, 3))}
+"""Parameters that are wrong together, if they are wrong; of the others each may be wrong alone."""
+
 SAMPLE_TIME, DURATION = 1.0 / 2000.0, 9.0
 SOLVER = hm.DormandPrince(relative_tolerance=1e-7, absolute_tolerance=1e-9)
 
@@ -156,6 +161,34 @@ def build(
             "torque_sensor": hm.Sensor(quantity="output_shaft.torque"),
         },
         connections=[("motor", "input_shaft", "wave_generator", "gear", "output_shaft", "load")],
+    )
+
+
+def bench() -> Bench:
+    """What is known of the bench, for ``hdrive-mbs diagnose models/drive_bench.py --records FOLDER``."""
+    still = ((0.0, 1.0), (0.0, 0.0))
+    return Bench(
+        scene=build(speed_reference=still, load_torque=still),
+        knowledge={name: Uncertain(paths=PATHS[name], sigma=sigma) for name, sigma in KNOWLEDGE.items()},
+        measured={name: _measured(name) for name in NOISE},
+        inputs={
+            "speed_reference": Input(
+                path="motor.characteristic.reference", law=lambda times, speeds: hm.SpeedTable(times=times, speeds=speeds)
+            ),
+            "load_torque": Input(path="load.torque", law=lambda times, torques: hm.TableTorque(times=times, torques=torques)),
+        },
+        together=TOGETHER,
+    )
+
+
+def _measured(column: str) -> Measured:
+    coloured = COLOURED.get(column, (0.0, 0.0))
+    return Measured(
+        channel=CHANNELS[column],
+        noise=math.sqrt(NOISE[column] ** 2 - coloured[0] ** 2),
+        resolution=RESOLUTION[column],
+        coloured=coloured,
+        offset=OFFSETS.get(column, 0.0),
     )
 
 

@@ -513,4 +513,5 @@ def bench() -> RotorBench:
             )
             for name in (*LATERAL, *TORSION)
         },
+        together=GROUPS,
     )

@@ -17,7 +17,7 @@ from hdrive_mbs.cli.options import JsonFile
 from hdrive_mbs.cli.output import write_json
 from hdrive_mbs.cli.python_file import imported, lines_named, own_effects
 from hdrive_mbs.cli.stages import stage_bars
-from hdrive_mbs.errors import FileFormatError, SceneError
+from hdrive_mbs.errors import FileFormatError, HdriveError, SceneError
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.scene_file import load_scene, save_scene
 from hdrive_mbs.writing import write_text
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from hdrive_mbs.effects.effect import Effect
     from hdrive_mbs.records.collection import Records
 
-WORK, JOB = "work", "job.json"
-"""Folder in --out that holds what is done while it is not finished, and the file in it that says of what."""
+WORK, JOB, INPUTS = "work", "job.json", "inputs.json"
+"""Folder in --out that holds what is done while it is not finished, and files in it that only say of what."""
 
 
 def diagnose(
@@ -81,6 +81,9 @@ def diagnose(
     except KeyboardInterrupt:
         print(f"interrupted; what is done is kept in {work}. The same command with --resume goes on.", file=sys.stderr)
         raise typer.Exit(130) from None
+    except HdriveError:
+        _leave(work)
+        raise
     write_answer(result, folder)
     shutil.rmtree(work)
     if json is not None:
@@ -201,3 +204,9 @@ def _begin(work: Path, job: Mapping[str, Any], resume: bool) -> Path:
         return work
     write_text(file, json_text.dumps(job, indent=2) + "\n")
     return work
+
+
+def _leave(work: Path) -> None:
+    """Take the folder away where no answer of a fit is in it."""
+    if not any(item.is_file() and item.name not in (JOB, INPUTS) for item in work.rglob("*")):
+        shutil.rmtree(work)

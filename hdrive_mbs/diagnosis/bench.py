@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from hdrive_mbs.diagnosis.trial import FloatArray, Trial
 from hdrive_mbs.errors import ParameterError, RecordError, unknown_place
 from hdrive_mbs.records.record import Record
 from hdrive_mbs.scene import Scene
+
+if TYPE_CHECKING:
+    from hdrive_mbs.diagnosis.experiment.plan import Plan
 
 HELD_OUT, BLOCKS = 0.25, 12
 """Share of each record that no fit sees, and the number of blocks it is cut into."""
@@ -58,7 +61,7 @@ class Bench:
     angles, speeds : of bodies at the start of every record; 0 if not given
     together : parameters that are suspected together, by a name for the group; every other one is suspected alone
 
-    Subclasses override ``trials`` where a record needs more than its columns put into the scene.
+    Subclasses override ``trials`` (and ``planned``) where a record needs more than its columns put into the scene.
     """
 
     scene: Scene
@@ -76,7 +79,9 @@ class Bench:
                 if path not in known:
                     raise unknown_place(f"path of {name!r}", path, known, "This scene")
         shown = self.scene.network().channels
-        channels = {channel.name for channel in shown} | {f"{channel.name}_acceleration" for channel in shown if channel.factors is not None}
+        channels = {channel.name for channel in shown} | {
+            f"{channel.name}_acceleration" for channel in shown if channel.factors is not None
+        }
         for column, measured in self.measured.items():
             if measured.channel not in channels:
                 raise unknown_place(f"channel of column {column!r}", measured.channel, channels, "This scene")
@@ -113,6 +118,30 @@ class Bench:
             ),
         )
 
+    def planned(self, plan: Plan) -> tuple[Trial, ...]:
+        """A record that has not been taken, laid beside the scene: what a planned experiment would show, measured columns zero.
+
+        Raises ParameterError for an input that the bench has not, or for a bench that has none.
+        """
+        unknown = [name for name in plan.inputs if name not in self.inputs]
+        if unknown or not self.inputs:
+            known = ", ".join(self.inputs) or "none; a bench that is driven in another way overrides planned()"
+            raise ParameterError(f"Plan {plan.name!r}: inputs {', '.join(unknown) or '(none)'}; this bench has {known}.")
+        times = tuple(plan.times.tolist())
+        changes = {item.path: item.law(times, tuple(plan.sampled(name).tolist())) for name, item in self.inputs.items()}
+        return (
+            Trial(
+                name=plan.name,
+                scene=self.scene.replacing(changes),
+                every=plan.every,
+                columns={name: np.zeros(plan.samples) for name in self.measured},
+                measured=self.measured,
+                held_out=np.zeros(plan.samples, bool),
+                angles=self.angles,
+                speeds=self.speeds,
+            ),
+        )
+
     def columns_of(self, record: Record) -> dict[str, FloatArray]:
         """Values of the columns that this bench knows; all inputs must be there, and one measured column at least."""
         found = {
@@ -125,6 +154,16 @@ class Bench:
                 f"Record {record.name!r} has no column {name!r}, which {'drives the scene' if missing else 'the bench measures'}."
                 f" It has: {', '.join(record.channels)}."
             )
+        shown = self.scene.network().channels
+        units = {channel.name: channel.unit for channel in shown}
+        units |= {f"{channel.name}_acceleration": f"{channel.unit}/s^2" for channel in shown if channel.factors is not None}
+        for name, item in self.measured.items():
+            wanted = units.get(item.channel)
+            if name in found and wanted is not None and record.channels[name].unit != wanted:
+                raise RecordError(
+                    f"Record {record.name!r}: column {name!r} is in {record.channels[name].unit}, but {item.channel!r}, which it measures,"
+                    f" is in {wanted}. Correct the unit when reading: units={{{name!r}: ...}}."
+                )
         return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import platform
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -13,11 +14,14 @@ import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.assumed_bench import assumed_bench
 from hdrive_mbs.diagnosis.bench import Bench
+from hdrive_mbs.diagnosis.candidate_checks import check_candidates, left_out
 from hdrive_mbs.diagnosis.candidates import candidates as all_candidates
 from hdrive_mbs.diagnosis.estimates import effect_estimates, nominal_estimates
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.gap import gaps
 from hdrive_mbs.diagnosis.gather import Evidence, gather
+from hdrive_mbs.diagnosis.input_checks import check_records, check_trials
+from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.result import Cause, Diagnosis, Place
 from hdrive_mbs.diagnosis.search import Found, Label
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -53,6 +57,7 @@ def diagnose(
     step: float | None = None,
     report: Report | None = None,
     pictures: bool = True,
+    watch: Callable[[Evidence], object] | None = None,
 ) -> Diagnosis:
     """Say where a model and its records disagree, which cause explains it, and how far the gap shrinks.
 
@@ -65,6 +70,7 @@ def diagnose(
     step : of the integration [s]; chosen by halving if not given
     report : called with (stage, done, total)
     pictures : with histories, located forces and maps for the report
+    watch : called with all fits, for those who want more figures than the answer holds
 
     Raises RecordError for records that do not fit the bench, ParameterError for a bad candidate, AnalysisError where
     the nominal model cannot be simulated.
@@ -72,6 +78,7 @@ def diagnose(
     started = time.monotonic()
     chosen = _records(records)
     known = bench if isinstance(bench, Bench) else assumed_bench(bench, chosen)
+    check_records(known, chosen)
     trials = [trial for record in chosen for trial in known.trials(record)]
     if not trials:
         raise ParameterError("A diagnosis needs at least one record.")
@@ -79,9 +86,19 @@ def diagnose(
     tried = all_candidates(trials[0].scene, candidates)
     step = suitable_step(trials, factors) if step is None else step
     coarse, fine = Simulator(trials, step, EVERY), Simulator(trials, step)
-    with Team(workers or 1) as team:
+    check_trials(coarse, factors)
+    check_candidates(tried, coarse, factors)
+    journal = None
+    if folder is not None:
+        inputs = {"records": chosen, "bench": known, "candidates": tried, "trials": (trials, factors, known.groups, step, EVERY)}
+        journal = Journal(folder, inputs)
+    with Team(workers or 1, journal) as team:
         evidence = gather(coarse, fine, factors, known.groups, tried, team, report)
-    return answer(known, trials, evidence, started=started, pictures=pictures, records=tuple(record.name for record in chosen))
+    if watch is not None:
+        watch(evidence)
+    found = answer(known, trials, evidence, started=started, pictures=pictures, records=tuple(record.name for record in chosen))
+    notes = (*left_out(tried, evidence.single), *(() if journal is None else journal.said))
+    return dataclasses.replace(found, notes=(*found.notes, *notes))
 
 
 def _records(records: Records | Sequence[Record] | Record) -> tuple[Record, ...]:
@@ -89,7 +106,7 @@ def _records(records: Records | Sequence[Record] | Record) -> tuple[Record, ...]
     if not found:
         raise ParameterError("A diagnosis needs at least one record.")
     for record in found:
-        record.checked()
+        record.checked()  # before a bench is made from them
     return found
 
 

@@ -171,10 +171,12 @@ def _orders(stretches: Sequence[_Stretch]) -> Iterator[DomainBin]:
         last = np.append(first[1:], len(number) if not len(first) else np.flatnonzero(number == number[-1])[0])
         if not len(first):
             continue
-        end, lengths = int(last[-1]), last - first
+        end = int(last[-1])
+        taper = np.sin(np.pi * np.modf(turned[:end] / TURNS)[0])
+        power = np.maximum(np.add.reduceat(taper**2, first), 1e-9)
         fastest = np.maximum.reduceat(np.abs(item.speed[:end]), first)
         turning = np.exp(-2j * np.pi * turned[:end] / STEP)
-        factor = np.ones(end, complex)
+        factor = taper.astype(complex)
         for k in range(1, grid):
             factor = factor * turning
             seen = fastest * k / STEP < 0.8 * np.pi / item.every
@@ -182,7 +184,7 @@ def _orders(stretches: Sequence[_Stretch]) -> Iterator[DomainBin]:
                 break
             for total, rows in ((before, item.before), (after, item.after)):
                 sums = np.add.reduceat(rows[:, :end] * factor, first, axis=1)
-                total[k] += float(np.sum((np.abs(sums) ** 2 / np.maximum(lengths, 1))[:, seen]))
+                total[k] += float(np.sum((np.abs(sums) ** 2 / power)[:, seen]))
             count[k] += len(item.before) * int(seen.sum())
     for order in range(ORDERS + 1):
         near = np.arange(max(1, STEP * order - STEP // 2), STEP * order + STEP // 2)

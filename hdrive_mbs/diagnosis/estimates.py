@@ -25,16 +25,16 @@ def nominal_estimates(fitted: Fitted, scene: Scene) -> tuple[Estimate, ...]:
     found = []
     for k, factor in enumerate(unknown for unknown in fitted.hypothesis.unknowns if isinstance(unknown, Factor)):
         nominal = factor.nominal[factor.path]
-        sigma, z, error = factor.sigma * factor.wide, float(fitted.z[k]), float(errors[k])
+        z, error = float(fitted.z[k]), float(errors[k])
         free = known[factor.path]
         found.append(
             Estimate(
                 name=factor.name,
                 unit=free.unit,
                 doc=free.quantity.doc,
-                value=nominal * math.exp(sigma * z),
-                low=nominal * math.exp(sigma * (z - WIDTH * error)),
-                high=nominal * math.exp(sigma * (z + WIDTH * error)),
+                value=nominal * factor.ratio(z),
+                low=nominal * factor.ratio(z - WIDTH * error),
+                high=nominal * factor.ratio(z + WIDTH * error),
                 nominal=nominal,
                 tolerance=factor.sigma,
                 identifiable=error < LEARNED,

@@ -2,7 +2,8 @@
 
 Minimises the misfit of the fitted samples (robust.py; |r|^2/2 where the model is right) + sum(p z^2)/2.  Each step solves
 (J^T W J + P + lambda D) d = -(J^T W r + P z) for several lambda at once, runs all of them side by side and keeps the
-best: Levenberg, Marquardt (e.g. Nocedal, Wright, Numerical Optimization, 10.3), with the damping found by trial.
+best: Levenberg, Marquardt (e.g. Nocedal, Wright, Numerical Optimization, 10.3), with the damping found by
+trial, and parts of the undamped step.
 """
 
 from __future__ import annotations
@@ -19,9 +20,14 @@ from hdrive_mbs.errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
 
-TRIED = ((0.0, 1.0), (1e-2, 1.0), (0.3, 1.0), (5.0, 1.0), (0.0, 0.5), (3e-2, 0.5), (0.0, 0.0), (0.1, 0.0))
-"""Each step tries all of these: times the damping at hand, and power of the weights.  With a power below 1 the stretches
-that fit worst count for more than the misfit says, which gets through curved valleys in fewer steps."""
+SHORTER = ((1.0, (1.0, 0.5, 0.25, 0.12, 0.06)), (0.5, (1.0, 0.3, 0.1)), (0.0, (1.0, 0.3, 0.1)))
+"""Power of the weights, and parts of the undamped step: tried side by side.  A weakly determined direction may wave where
+the strongly determined ones are as narrow as they are, and then a part of the step is right and the whole is not.  With a
+power below 1 the stretches that fit worst count for more than the misfit says."""
+DAMPED = ((1.0, 1e-2), (1.0, 0.3), (1.0, 5.0), (0.5, 3e-2), (0.0, 0.1))
+"""Power of the weights, and times the damping at hand: tried besides."""
+CHANGE, CAUTIOUS = 5.0, 0.15
+"""Change of the residuals (root of their sum of squares) that a difference makes, and share of the longest step it may take."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,24 +57,44 @@ class Fitted:
         return np.asarray(np.linalg.inv(total))
 
 
-def jacobian(simulator: Simulator, hypothesis: Hypothesis, z: FloatArray, residuals: FloatArray) -> FloatArray:
-    """d residuals/dz over the fitted samples, shape (n, size), by differences; a column that cannot be run is zero."""
-    steps = hypothesis.steps(z)
+def jacobian(
+    simulator: Simulator, hypothesis: Hypothesis, z: FloatArray, residuals: FloatArray, metric: FloatArray | None = None
+) -> FloatArray:
+    """d residuals/dz over the fitted samples, shape (n, size), by differences; a column that cannot be run is zero.
+
+    metric : J^T W J + P of a point nearby.  The differences are then taken along its axes, each as long as it takes to
+        change the residuals by CHANGE: what hardly shows gets a long step, and is not buried under the errors of what
+        shows most.
+    """
+    mask = simulator.fit
+    base = residuals[mask]
+    directions = np.diag(hypothesis.steps(z)) if metric is None else _axes(hypothesis, z, metric)
     points = []
-    for k, step in enumerate(steps):
-        moved = z.copy()
-        moved[k] += step
-        clipped = hypothesis.clipped(moved)
-        if clipped[k] == z[k]:  # at its upper limit
-            moved[k], steps[k] = z[k] - step, -step
-        points.append(moved)
-    found = simulator.residuals(hypothesis, points)
-    base = residuals[simulator.fit]
-    columns = np.zeros((len(z), len(base)))
-    for k, item in enumerate(found):
+    for k in range(len(z)):
+        if not np.allclose(hypothesis.clipped(z + directions[:, k]), z + directions[:, k], rtol=0.0, atol=1e-14):
+            directions[:, k] *= -1.0
+        points.append(z + directions[:, k])
+    if metric is not None and not all(np.allclose(hypothesis.clipped(point), point, rtol=0.0, atol=1e-14) for point in points):
+        return jacobian(simulator, hypothesis, z, residuals)
+    changes = np.zeros((len(z), len(base)))
+    for k, item in enumerate(simulator.residuals(hypothesis, points)):
         if item is not None:
-            columns[k] = (item[simulator.fit] - base) / steps[k]
-    return columns.T
+            changes[k] = item[mask] - base
+        elif metric is not None:
+            return jacobian(simulator, hypothesis, z, residuals)
+    if metric is None:
+        return np.asarray((changes / np.diag(directions)[:, None]).T)
+    return np.asarray(np.linalg.solve(directions.T, changes).T)
+
+
+def _axes(hypothesis: Hypothesis, z: FloatArray, metric: FloatArray) -> FloatArray:
+    """Axes of a metric as columns, each of length CHANGE in it or as far as a cautious step goes."""
+    scale = np.sqrt(np.maximum(np.diag(metric), 1e-300))
+    values, vectors = np.linalg.eigh(metric / np.outer(scale, scale))
+    values = np.maximum(values, 1e-12 * values[-1])
+    axes = vectors / scale[:, None] * (CHANGE / np.sqrt(values))
+    longest = np.max(np.abs(axes) / (CAUTIOUS * hypothesis.reaches(z))[:, None], axis=0)
+    return np.asarray(axes / np.maximum(longest, 1.0))
 
 
 def fit(
@@ -77,7 +103,7 @@ def fit(
     start: FloatArray,
     *,
     steps: int = 20,
-    enough: float = 0.02,
+    enough: float = 0.2,
     share: float = 1e-4,
     stop: Callable[[], bool] | None = None,
     begin: FloatArray | None = None,
@@ -107,7 +133,7 @@ def fit(
         columns = jacobian(simulator, hypothesis, z, residuals)
         weights = simulator.blocks.weights(residuals[mask])
         systems = {}
-        for power in {power for _, power in TRIED}:
+        for power, _ in SHORTER:
             weighted = columns * (weights**power)[:, None]
             systems[power] = weighted.T @ columns, weighted.T @ residuals[mask] + precisions * z
         curvature = systems[1.0][0]
@@ -147,21 +173,38 @@ def fit(
     )
 
 
+Systems = Mapping[float, tuple[FloatArray, FloatArray]]
+
+
+def _scaled(curvature: FloatArray, precisions: FloatArray, damping: float) -> tuple[FloatArray, FloatArray]:
+    """The damped normal matrix on the scale of its own diagonal, and this scale."""
+    normal = curvature + np.diag(precisions)
+    scale = np.sqrt(np.where(np.diag(normal) > 0.0, np.diag(normal), 1.0))
+    return normal / np.outer(scale, scale) + (damping + 1e-12) * np.eye(len(scale)), scale
+
+
 def _proposals(
-    hypothesis: Hypothesis,
-    z: FloatArray,
-    precisions: FloatArray,
-    systems: Mapping[float, tuple[FloatArray, FloatArray]],
-    damping: float,
+    hypothesis: Hypothesis, z: FloatArray, precisions: FloatArray, systems: Systems, damping: float
 ) -> list[tuple[FloatArray, float]]:
-    """Steps for each damping and weighting, shortened coordinate by coordinate and clipped to what is allowed."""
+    """Points to try, each with its damping; steps are limited coordinate by coordinate and clipped to what is allowed."""
     reaches = hypothesis.reaches(z)
-    points = []
-    for factor, power in TRIED:
+
+    def step(power: float, extra: float) -> FloatArray:
         curvature, slope = systems[power]
-        normal = curvature + np.diag(precisions)
-        scale = np.sqrt(np.where(np.diag(normal) > 0.0, np.diag(normal), 1.0))
-        scaled = normal / np.outer(scale, scale) + (factor * damping + 1e-12) * np.eye(len(z))
-        move = -np.linalg.lstsq(scaled, slope / scale, rcond=None)[0] / scale
-        points.append((hypothesis.clipped(z + np.clip(move, -reaches, reaches)), factor))
+        matrix, scale = _scaled(curvature, precisions, extra)
+        return -_solved(matrix, slope / scale) / scale
+
+    points = []
+    for power, parts in SHORTER:
+        whole = step(power, 0.0)
+        points += [(hypothesis.clipped(z + np.clip(part * whole, -reaches, reaches)), 0.0) for part in parts]
+    for power, factor in DAMPED:
+        points.append((hypothesis.clipped(z + np.clip(step(power, factor * damping), -reaches, reaches)), factor))
     return points
+
+
+def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Least-norm solution; zero where the numbers are not finite."""
+    if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
+        return np.zeros_like(right)
+    return np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0])

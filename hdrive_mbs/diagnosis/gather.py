@@ -10,17 +10,21 @@ import numpy as np
 
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.search import Found, Report, Search, Task, fit_nominal, run_task, scored, search
+from hdrive_mbs.diagnosis.search import FINE, HOPS, Depth, Found, Report, Search, Task, fit_nominal, run_task, scored, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 
-LEFT = 1.03
+LEFT = 1.1
 """Mean square left by the best single cause above which a second one is looked for."""
+SHALLOW = Depth(brief=(3, 4), laws=1, kept=(2, 3), serious=2)
+"""Of the search for a second cause."""
 SINGLES, LAST, LONG = 3, 4, 20
 """Labels that are fitted on all samples, and steps that this may take for them and for the best."""
-EXACT = 1e-5
+EXACT = 1e-6
 """Relative change of the cost that ends these last fits."""
+NEAR = 3.0
+"""Mean square up to which the nominal model is fitted as sharply as the causes: its evidence is then what they are held against."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +45,10 @@ class Evidence:
     pairs: tuple[Found, ...]
 
 
+def _second(said: Report, stage: str, done: int, total: int) -> None:
+    said(f"second cause: {stage}", done, total)
+
+
 def gather(
     coarse: Simulator,
     fine: Simulator,
@@ -58,18 +66,20 @@ def gather(
     """
     said = report or (lambda stage, done, total: None)
     said("fitting the nominal model", 0, 1)
-    null = fit_nominal(coarse, factors)
+    [null] = team.map(fit_nominal, coarse, [tuple(factors)])
     single = search(team, coarse, null, groups, tried, report=said)
     first = single.found[0] if single.found else None
     pair = None
     if first is not None and first.log_odds > 0.0 and first.fitted.chi_fit > LEFT:
-        pair = search(team, coarse, first.fitted, groups, tried, report=lambda stage, k, n: said(f"second cause: {stage}", k, n))
+        again = partial(_second, said)
+        pair = search(team, coarse, first.fitted, groups, tried, depth=SHALLOW, report=again)
     serious = single.labels[:SINGLES]
     double = () if pair is None else pair.labels[:1]
-    tasks = [Task(null.hypothesis, np.zeros_like(null.z), None, 0, 1.0), Task(null.hypothesis, null.z, None, LAST, EXACT)]
+    tasks = [Task(null.hypothesis, np.zeros_like(null.z), None, 0, 1.0), Task(null.hypothesis, null.z, None, LONG, EXACT if null.chi_fit < NEAR else FINE, hops=HOPS)]
     best = min((*serious, *double), key=lambda item: item.fitted.cost, default=None)
     for item in (*serious, *double):
-        tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, LONG if item is best else LAST, EXACT))
+        far = item is best or null.chi_fit < NEAR
+        tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, LONG if far else LAST, EXACT, hops=HOPS if far else 0))
     fits = team.map(run_task, fine, tasks, partial(said, "all samples"))
     pairs = list(zip((*serious, *double), fits[2:], strict=True))
     final = [scored(Found(item.suspect, fitted), fits[1]) for item, fitted in pairs]

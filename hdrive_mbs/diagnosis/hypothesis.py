@@ -56,7 +56,7 @@ def unknowns_of(effect: Effect, name: str) -> tuple[Unknown, ...]:
             continue
         if key in dict(kind.vectors):
             found.append(Vector(path, f"{name}.{dict(kind.vectors)[key]}", low, high, value or low))
-        elif low < 0.0:
+        elif low <= 0.0:
             found.append(Signed(path, high, -np.inf if item.low is None else item.low, np.inf if item.high is None else item.high))
         elif item.low == 0.0:
             found.append(Strength(path, low, high, value or low, np.inf if item.high is None else item.high))

@@ -17,6 +17,7 @@ from hdrive_mbs.diagnosis.hypothesis import FloatArray, Hypothesis
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.errors import LawError, ParameterError
 from hdrive_mbs.network.network import Network
+from hdrive_mbs.quantities import Described
 from hdrive_mbs.scene import Scene
 
 Inputs = tuple[TimeInput, ...]
@@ -57,6 +58,12 @@ class Lines:
         for family in self._families:
             scenes = [self._trials[k].scene for k in family]
             family.sort(key=lambda k: -sum(scene is self._trials[k].scene for scene in scenes))  # noqa: B023
+        self._inputs: dict[int, list[str]] = {}
+        for family in self._families:
+            first = self._trials[family[0]].scene
+            others = [self._trials[k].scene for k in family[1:]]
+            parts = ((name, part, other.parts[name]) for other in others if other is not first for name, part in first.parts.items())
+            self._inputs[family[0]] = sorted({path for name, a, b in parts for path in _differing(a, b, name)})
         self._known: dict[tuple[int, Structure], tuple[Inputs, Inputs] | None] = {}
 
     def at(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[list[Start | None]]:
@@ -70,10 +77,11 @@ class Lines:
 
     def _apart(self, family: list[int], hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[list[int]]:
         """The family, or each member alone where a searched parameter sits in what tells them apart."""
-        first = self._trials[family[0]].scene
-        differing = {name for k in family for name in _differing(first, self._trials[k].scene)}
-        searched = {path.partition(".")[0] for path in hypothesis.values(points[0])} if points else set()
-        return [family] if differing.isdisjoint(searched) else [[k] for k in family]
+        if not points:
+            return [family]
+        differing = self._inputs[family[0]]
+        apart = any(_meet(path, other) for path in hypothesis.values(points[0]) for other in differing)
+        return [[k] for k in family] if apart else [family]
 
     def _family(self, family: list[int], hypothesis: Hypothesis, points: Sequence[FloatArray]) -> dict[int, list[Start | None]]:
         scene = self._trials[family[0]].scene
@@ -152,9 +160,26 @@ def _alike(a: Scene, b: Scene) -> bool:
     )
 
 
-def _differing(a: Scene, b: Scene) -> list[str]:
-    """Names of the parts in which scenes differ."""
-    return [] if a is b else [name for name, part in a.parts.items() if part is not b.parts[name] and part != b.parts[name]]
+def _differing(a: Described, b: Described, path: str) -> list[str]:
+    """Paths of the fields in which two parts differ, as deep as they are of the same kind."""
+    if a is b or a == b:
+        return []
+    if type(a) is not type(b):
+        return [path]
+    found = []
+    for name, own, _ in a.fields():
+        other = getattr(b, name)
+        if isinstance(own, Described) and isinstance(other, Described):
+            found += _differing(own, other, f"{path}.{name}")
+        elif own is not other and own != other:
+            found.append(f"{path}.{name}")
+    return found
+
+
+def _meet(path: str, other: str) -> bool:
+    """Whether one path holds the other."""
+    return path == other or path.startswith(f"{other}.") or other.startswith(f"{path}.")
+
 
 
 def _same(a: Program, b: Program) -> bool:

@@ -37,27 +37,24 @@ def with_unit(value: float, unit: str, significant: int = 4) -> str:
     return digits(value / size, significant) + (f" {name}" if name not in ("", "1") and not math.isnan(value) else "")
 
 
-def alike(values: Sequence[float], significant: int) -> list[str]:
-    """Values with the same number of decimals, the largest with so many significant digits."""
-    finite = [abs(value) for value in values if math.isfinite(value)]
-    largest = max(finite, default=0.0)
-    if not 1e-3 <= largest < 1e6:
-        return [digits(value, significant) for value in values]
-    places = max(significant - 1 - math.floor(math.log10(largest)), 0)
-    return [f"{value:.{places}f}" if math.isfinite(value) else digits(value) for value in values]
-
-
 def interval(value: float, low: float, high: float, unit: str = "") -> str:
-    """``2.031 (1.98 to 2.08) N m``: as many digits as the interval allows; "no interval" where there is none."""
+    """``2.03 (1.98 to 2.08) N m``, rounded so that the width of the interval keeps two digits; "no interval" where there is none."""
     name, size = scale(unit, value)
     tail = f" {name}" if name not in ("", "1") and not math.isnan(value) else ""
     if not (math.isfinite(low) and math.isfinite(high)):
         return "-" if math.isnan(value) else f"{digits(value / size)}{tail} (no interval)"
-    significant = 4
-    if math.isfinite(value) and value and high > low:
-        significant = min(max(2 + math.floor(math.log10(abs(value)) - math.log10(high - low)) + 1, 3), 7)
-    numbers = alike((value / size, low / size, high / size), significant)
+    numbers = _rounded((value / size, low / size, high / size), (high - low) / size)
     return f"{numbers[0]} ({numbers[1]} to {numbers[2]}){tail}"
+
+
+def _rounded(values: Sequence[float], width: float) -> list[str]:
+    largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
+    if not (largest > 0.0 and width > 0.0):
+        return [digits(value) for value in values]
+    last = max(math.floor(math.log10(width)) - 1, math.floor(math.log10(largest)) - 6)
+    if not 1e-3 <= largest < 1e6:
+        return [f"{value:.{max(math.floor(math.log10(largest)) - last, 1)}e}" for value in values]
+    return [f"{round(value, -last):.{max(-last, 0)}f}" if math.isfinite(value) else digits(value) for value in values]
 
 
 def named(name: str) -> str:

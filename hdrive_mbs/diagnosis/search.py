@@ -12,6 +12,7 @@ import numpy.typing as npt
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.evidence import log_evidence
 from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian
+from hdrive_mbs.diagnosis.hops import settled
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -26,12 +27,28 @@ LOOSE = 10.0
 """Times its prior standard deviation that a suspected parameter may be off."""
 COARSE, FINE = 3e-3, 1e-4
 """Relative change of the cost that ends the fit of the nominal model, whose misfit may have no explanation in it, and of others."""
-BRIEF, LAWS, STEPS = (4, 10), 2, 3
-"""Labels that are looked at closer (at least, at most), laws of each that get joint steps, and how many of these."""
-KEPT, SERIOUS, CONVERGED = (3, 6), 3, 25
-"""Laws that are fitted on (at least, at most), how many of them to the end, and steps that this may take."""
+STEPS, ELSEWHERE, CONVERGED = 3, 8, 25
+"""Joint steps before the last choice, of the best law at other places, and steps that a fit to the end may take."""
+HOPS = 3
+"""Hops out of hollows for the nominal model, which everything else is held against."""
+PARAMETER = "parameter"
+"""Law of a suspect that is no effect."""
 SHARE = 0.08
 """Of the best one's gain: what gains less is followed up only to fill the least number."""
+
+
+@dataclass(frozen=True)
+class Depth:
+    """How far a search goes.
+
+    brief : labels that are looked at closer, at least and at most;  laws : of each that get joint steps (1: no closer look)
+    kept : laws that are fitted on, at least and at most;  serious : how many of them to the end
+    """
+
+    brief: tuple[int, int] = (4, 10)
+    laws: int = 3
+    kept: tuple[int, int] = (3, 6)
+    serious: int = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +102,7 @@ def suspects(base: Hypothesis, groups: Mapping[str, Sequence[str]], tried: Seque
         if not set(names) & set(base.loose):
             loose = {**base.loose, **dict.fromkeys(names, LOOSE)}
             one = (Hypothesis(base.factors, base.added, loose),)
-            found.append(Suspect(("parameter", group), "parameter", one, one))
+            found.append(Suspect(("parameter", group), PARAMETER, one, one))
     for item in tried:
         if (item.kind, item.at) in taken:
             continue
@@ -114,7 +131,7 @@ def fit_nominal(simulator: Simulator, factors: Sequence[Factor]) -> Fitted:
     residuals = simulator.residuals(nominal, [np.zeros(nominal.size)])[0]
     if residuals is None:
         raise AnalysisError("The nominal scene cannot be simulated through the records; look at its start values and inputs.")
-    return fit(simulator, nominal, np.zeros(nominal.size), steps=40, share=COARSE, begin=residuals)
+    return settled(simulator, fit(simulator, nominal, np.zeros(nominal.size), steps=40, share=COARSE, begin=residuals), HOPS)
 
 
 def search(
@@ -124,34 +141,65 @@ def search(
     groups: Mapping[str, Sequence[str]],
     tried: Sequence[Candidate],
     *,
+    depth: Depth | None = None,
     report: Report | None = None,
 ) -> Search:
     """Look at everything that may be missing from a fitted model, and fit the best together with its parameters.
 
     One simple law stands for each label in the first look.  The best labels are looked at with all laws and starts,
     the best of those get a few joint steps with their own Jacobians, and the best of these are fitted to the end.
+    What came out best is then tried at all other places where it may sit, from the values found.
     """
     said = report or (lambda stage, done, total: None)
+    how = depth or Depth()
     columns = jacobian(simulator, base.hypothesis, base.z, base.residuals)
     screen = Screen(simulator, base, columns)
     everything = suspects(base.hypothesis, groups, tried)
     simple = _simplest(everything)
     looks = _looked(team, screen, simple, [item.first for item in simple], partial(said, "looking at candidates"))
     costs = [look.cost for _, look in looks]
-    chosen = [suspect.label for suspect, _ in looks[: _worth(base.cost, costs, BRIEF)]]
-    laws = [suspect for suspect in everything if suspect.label in chosen]
-    closer = _looked(team, screen, laws, [item.all for item in laws], partial(said, "looking closer"))
-    picked = _picked(closer, laws=LAWS)
+    chosen = [suspect.label for suspect, _ in looks[: _worth(base.cost, costs, how.brief)]]
+    closer = [pair for pair in looks if pair[0].label in chosen]
+    if how.laws > 1:
+        laws = [suspect for suspect in everything if suspect.label in chosen]
+        closer = _looked(team, screen, laws, [item.all for item in laws], partial(said, "looking closer"))
+    picked = _picked(closer, laws=how.laws)
     tasks = [Task(look.hypothesis, look.z, look.residuals, STEPS, FINE) for _, look in picked]
     fits = team.map(run_task, simulator, tasks, partial(said, "a few joint steps"))
     brief = [Found(suspect, fitted) for (suspect, _), fitted in zip(picked, fits, strict=True)]
     brief.sort(key=lambda item: item.fitted.cost)
-    kept = brief[: _worth(base.cost, [item.fitted.cost for item in brief], KEPT)]
-    tasks = [further(item.fitted, CONVERGED if k < SERIOUS else STEPS) for k, item in enumerate(kept)]
+    kept = brief[: _worth(base.cost, [item.fitted.cost for item in brief], how.kept)]
+    tasks = [further(item.fitted, *((CONVERGED, FINE, 1) if k < how.serious else (STEPS,))) for k, item in enumerate(kept)]
     fits = team.map(run_task, simulator, tasks, partial(said, "fitting the best"))
-    final = [scored(Found(item.suspect, fitted), base) for item, fitted in zip(kept, fits, strict=True)]
-    final.sort(key=lambda item: -item.log_odds)
+    found = [Found(item.suspect, fitted) for item, fitted in zip(kept, fits, strict=True)]
+    if how.laws > 1:
+        moved = _elsewhere(min(found, key=lambda item: item.fitted.cost, default=None), base, everything)
+        fits = team.map(run_task, simulator, [task for _, task in moved], partial(said, "trying the best elsewhere"))
+        found += [Found(suspect, fitted) for (suspect, _), fitted in zip(moved, fits, strict=True)]
+        found.sort(key=lambda item: item.fitted.cost)
+        if found and not found[0].fitted.converged:
+            found[0] = Found(found[0].suspect, run_task(simulator, further(found[0].fitted)))
+    final = sorted((scored(item, base) for item in found), key=lambda item: -item.log_odds)
     return Search(base=base, found=tuple(final), looks={f"{suspect.law} at {suspect.label[1]}": look.cost for suspect, look in looks})
+
+
+def _elsewhere(best: Found | None, base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:
+    """The law that did best with the values that it found, at the other places of its family."""
+    if best is None or best.suspect.law == PARAMETER:
+        return []
+    fitted = best.fitted
+    values = fitted.hypothesis.rescaled(fitted.z)[0].added[-1].effect
+    tasks = []
+    for suspect in everything:
+        if suspect.law != best.suspect.law or suspect.label == best.suspect.label:
+            continue
+        old = suspect.all[0]
+        added = (*old.added[:-1], Added(values, old.added[-1].at, old.added[-1].name))
+        hypothesis = Hypothesis(old.factors, added, old.loose)
+        z = hypothesis.start(fitted.hypothesis.nominal_part(fitted.z))
+        z[base.hypothesis.nominal_size : base.hypothesis.size] = base.z[base.hypothesis.nominal_size :]
+        tasks.append((suspect, Task(hypothesis, z, None, ELSEWHERE, FINE)))
+    return tasks
 
 
 def _worth(before: float, costs: Sequence[float], limits: tuple[int, int]) -> int:
@@ -177,7 +225,7 @@ def _look(screen: Screen, hypotheses: tuple[Hypothesis, ...]) -> Look | None:
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """A fit to do: where it begins, and how far it may go.  ``done`` is set where there is nothing left to do."""
+    """A fit to do: where it begins, how far it may go, and hops at its end.  ``done`` is set where it is fitted already."""
 
     hypothesis: Hypothesis
     z: FloatArray
@@ -185,18 +233,18 @@ class Task:
     steps: int
     share: float
     done: Fitted | None = None
+    hops: int = 0
 
 
 def run_task(simulator: Simulator, task: Task) -> Fitted:
     """Do it."""
-    if task.done is not None:
-        return task.done
-    return fit(simulator, task.hypothesis, task.z, steps=task.steps, share=task.share, begin=task.residuals)
+    fitted = task.done or fit(simulator, task.hypothesis, task.z, steps=task.steps, share=task.share, begin=task.residuals)
+    return settled(simulator, fitted, task.hops) if task.hops else fitted
 
 
-def further(fitted: Fitted, steps: int = CONVERGED, share: float = FINE) -> Task:
+def further(fitted: Fitted, steps: int = CONVERGED, share: float = FINE, hops: int = 0) -> Task:
     """To fit on from where a fit stands."""
-    return Task(fitted.hypothesis, fitted.z, fitted.residuals, steps, share, fitted if fitted.converged else None)
+    return Task(fitted.hypothesis, fitted.z, fitted.residuals, steps, share, fitted if fitted.converged else None, hops)
 
 
 def scored(found: Found, base: Fitted) -> Found:

@@ -111,6 +111,8 @@ def bin_name(item: DomainBin) -> str:
     """The range of a bin in words."""
     if item.over == "direction":
         return "at rest and at reversals" if item.low < 0.0 < item.high else "backward" if item.high <= 0.0 else "forward"
+    if item.over == "order":
+        return f"order {0.5 * (item.low + item.high):g}" if item.low > 0.0 else f"below order {item.high:g}"
     unit = "" if item.unit in ("", "1") else f" {item.unit}"
     if math.isinf(item.high):
         return f"above {item.low:.3g}{unit}"

@@ -1,65 +1,54 @@
 """Candidates side by side in processes: what they share is sent once, results come back in order.
 
-Processes are kept between the stages of a diagnosis, so that the machine code that each has made stays.
+Processes are kept between the stages of a diagnosis, so that the machine code that each has made stays.  With a journal,
+what was done in an earlier, interrupted run is taken from there.
 """
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import pickle
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Sequence
+from multiprocessing import connection
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TypeVar
 
+from hdrive_mbs.diagnosis.journal import Journal
+from hdrive_mbs.diagnosis.packing import packed
+from hdrive_mbs.diagnosis.worker import READY, Worker
 from hdrive_mbs.errors import AnalysisError, ParameterError
 
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
 
-_SHARED: dict[str, Any] = {}
-
-
-def _do(path: str, function: Callable[[Any, Any], Any], item: Any) -> Any:
-    if path not in _SHARED:
-        _SHARED.clear()
-        _SHARED[path] = pickle.loads(Path(path).read_bytes())
-    return function(_SHARED[path], item)
-
-
-def _one_thread() -> None:
-    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ[name] = "1"
+PATIENCE = 5.0
+"""Seconds that idle processes get to end by themselves."""
 
 
 class Team:
     """Workers for one diagnosis; with one worker everything happens in this process.
 
     with Team(2) as team: answers = team.map(function, shared, items)
+
+    workers : processes;  journal : where finished work is kept, if it is to be
     """
 
-    def __init__(self, workers: int) -> None:
+    def __init__(self, workers: int, journal: Journal | None = None) -> None:
         if workers < 1:
             raise ParameterError(f"workers = {workers}: must be at least 1.")
-        self.workers = workers
-        self._pool: ProcessPoolExecutor | None = None
+        self.workers, self.journal = workers, journal
+        self._running: list[Worker] = []
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._number = 0
 
     def __enter__(self) -> Self:
         if self.workers > 1:
-            _one_thread()  # the children's numpy reads it when it is imported
             self._folder = tempfile.TemporaryDirectory(prefix="hdrive_mbs_")
-            self._pool = ProcessPoolExecutor(self.workers, mp_context=multiprocessing.get_context("spawn"))
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        if self._pool is not None:
-            self._pool.shutdown(wait=error is None, cancel_futures=True)
+        while self._running:
+            self._running.pop().end(PATIENCE if error is None else 0.0)
         if self._folder is not None:
             self._folder.cleanup()
 
@@ -72,36 +61,84 @@ class Team:
     ) -> list[Answer]:
         """function(shared, item) of each item, in order; ``done(number, total)`` is called as they come in.
 
-        Raises AnalysisError where a process dies (out of memory, say).
+        Raises AnalysisError where a process dies (out of memory, say), and whatever the function raises.
         """
         said = done or (lambda number, total: None)
-        if self._pool is None or len(items) < 2:
-            answers = []
-            for k, item in enumerate(items):
-                said(k, len(items))
-                answers.append(function(shared, item))
-            return answers
-        return list(self._side_by_side(function, shared, items, said))
+        answers: dict[int, Answer] = {}
+        keys: dict[int, str] = {}
+        if self.journal is not None:
+            whole = self.journal.identity(shared)
+            keys = {k: self.journal.key(function, whole, item) for k, item in enumerate(items)}
+            for k, key in keys.items():
+                found = self.journal.read(key, items[k])
+                if found is not None:
+                    answers[k] = found[0]
+
+        def finished(k: int, answer: Answer) -> None:
+            answers[k] = answer
+            if self.journal is not None:
+                self.journal.write(keys[k], answer)
+            said(len(answers), len(items))
+
+        said(len(answers), len(items))
+        left = [k for k in range(len(items)) if k not in answers]
+        if self._folder is None or len(left) < 2:
+            for k in left:
+                finished(k, function(shared, items[k]))
+        else:
+            self._side_by_side(function, shared, {k: items[k] for k in left}, finished)
+        return [answers[k] for k in range(len(items))]
 
     def _side_by_side(
-        self, function: Callable[[Any, Item], Answer], shared: Any, items: Sequence[Item], said: Callable[[int, int], None]
-    ) -> Iterator[Answer]:
-        assert self._pool is not None
+        self, function: Callable[[Any, Item], Answer], shared: Any, items: dict[int, Item], finished: Callable[[int, Answer], None]
+    ) -> None:
         assert self._folder is not None
         self._number += 1
         path = Path(self._folder.name) / f"{self._number}.pickle"
-        path.write_bytes(pickle.dumps(shared))
-        futures = [self._pool.submit(_do, str(path), function, item) for item in items]
-        waiting = set(futures)
-        try:
-            while waiting:
-                _finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
-                said(len(futures) - len(waiting), len(futures))
-            for future in futures:
-                yield future.result()
-        except BrokenProcessPool as error:
-            raise AnalysisError("A process of the diagnosis died (out of memory?); try fewer workers.") from error
-        finally:
-            for future in waiting:
-                future.cancel()
-            path.unlink(missing_ok=True)
+        path.write_bytes(packed(shared))
+        while len(self._running) < self.workers:
+            self._running.append(Worker.start())
+        waiting = list(items)
+        for worker in self._running:
+            if worker.ready and waiting:
+                worker.give(waiting[0], path, function, items[waiting.pop(0)])
+        while waiting or any(worker.at is not None for worker in self._running):
+            for pipe in connection.wait([worker.pipe for worker in self._running]):
+                worker = next(one for one in self._running if one.pipe is pipe)
+                try:
+                    good, answer = worker.pipe.recv()
+                except (EOFError, OSError):
+                    raise self._died(worker, items) from None
+                if not good:
+                    raise answer
+                if not worker.ready:
+                    assert answer == READY
+                    worker.ready = True
+                else:
+                    assert worker.at is not None
+                    number, worker.at = worker.at, None
+                    finished(number, answer)
+                if waiting:
+                    worker.give(waiting[0], path, function, items[waiting.pop(0)])
+        path.unlink(missing_ok=True)
+
+    def _died(self, worker: Worker, items: dict[int, Item]) -> AnalysisError:
+        self._running.remove(worker)
+        how = worker.end(PATIENCE)
+        kept = f" What is finished is kept in {self.journal.folder}." if self.journal is not None else ""
+        if not worker.ready:
+            return AnalysisError(
+                f"A worker process of the diagnosis could not start ({how}; its own words are above). A script that calls diagnose"
+                " needs the line if __name__ == '__main__': before the call, since each process reads the script; or use workers=1."
+            )
+        work = _named(items[worker.at]) if worker.at is not None else "nothing"
+        return AnalysisError(
+            f"A worker process of the diagnosis died ({how}) at work on {work}; if memory was short, use fewer workers.{kept}"
+        )
+
+
+def _named(item: object) -> str:
+    """What an item is about, in words."""
+    first = item[0] if isinstance(item, tuple) and item else item
+    hypothesis = getattr(first, "hypothesis", first)
+    return str(getattr(hypothesis, "label", type(first).__name__))

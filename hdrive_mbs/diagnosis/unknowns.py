@@ -2,7 +2,7 @@
 
 Each unknown turns one or two search coordinates into values of fields and knows its prior:
 
-* Factor: a nominal parameter p = p0 exp(sigma z) with z ~ N(0, 1)
+* Factor: a nominal parameter p = p0 (1 + sigma z) with z ~ N(0, 1), kept positive (see ``Factor``)
 * Strength: a size s z >= 0 of an effect that vanishes at 0; its logarithm is uniform over the typical range
 * Shape: a positive field exp(m + w z), z ~ N(0, 1), the typical range at z = -2 .. 2
 * Signed: a field of either sign, w z, z ~ N(0, 1), the typical range at z = -2 .. 2
@@ -18,6 +18,8 @@ from dataclasses import dataclass
 
 BEYOND = 4.0
 """Times the end of a typical range that a fitted strength may go."""
+STRAIGHT, FARTHEST = 0.4, 19.0
+"""Of its nominal value: where a parameter stops being linear in its coordinate; and how far it may grow above it."""
 SMALLEST = 1e-3
 """Of its scale: a strength below it is zero for the prior."""
 
@@ -69,7 +71,11 @@ def _normal(z: Sequence[float]) -> float:
 
 @dataclass(frozen=True)
 class Factor(Unknown):
-    """A nominal parameter; ``wide`` widens its prior where the parameter itself is under suspicion."""
+    """A nominal parameter; ``wide`` widens its prior where the parameter itself is under suspicion.
+
+    p/p0 = 1 + sigma z down to STRAIGHT, and from there b exp((1 + sigma z - b)/b) with b = STRAIGHT: positive and smooth.
+    Straight, because inertias and drags enter as sums: what only their sum determines is then a straight valley.
+    """
 
     name: str
     nominal: Mapping[str, float]
@@ -77,14 +83,19 @@ class Factor(Unknown):
     wide: float = 1.0
 
     def values(self, z: Sequence[float]) -> dict[str, float]:
-        return {path: value * math.exp(self.sigma * self.wide * z[0]) for path, value in self.nominal.items()}
+        return {path: value * self.ratio(z[0]) for path, value in self.nominal.items()}
+
+    def ratio(self, z: float) -> float:
+        """p/p0."""
+        straight = 1.0 + self.sigma * self.wide * z
+        return straight if straight >= STRAIGHT else STRAIGHT * math.exp((straight - STRAIGHT) / STRAIGHT)
 
     def log_prior(self, z: Sequence[float]) -> float:
         return _normal(z)
 
     def clipped(self, z: Sequence[float]) -> tuple[float, ...]:
-        limit = math.log(20.0) / (self.sigma * self.wide)
-        return (min(max(z[0], -limit), limit),)
+        most = FARTHEST / (self.sigma * self.wide)
+        return (min(max(z[0], -most), most),)
 
     def step(self, z: Sequence[float]) -> float:
         return 0.01 / self.wide

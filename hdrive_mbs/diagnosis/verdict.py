@@ -23,8 +23,9 @@ FITS = 1.6
 """Mean square below which a claim stands whatever its share."""
 TIED = 5.0
 """Difference of log odds within which two labels cannot be told apart."""
-SECOND = 25.0
-"""Log odds that a second cause needs over the first alone."""
+SECOND, MORE = 25.0, 0.5
+"""Log odds that a second cause needs over the first alone, and share of the logarithm of what the first leaves that it has
+to take away: laws that are nearly right always leave something that a second cause can nibble at."""
 TEMPERATURE = 12.0
 """By which differences of log odds are divided before they become probabilities: models are never quite right."""
 
@@ -59,7 +60,7 @@ def judge(null_misfit: float, found: Sequence[Found], pair: Found | None) -> Cla
         kind = "none" if null_misfit <= CLEAN else "unknown"
         return Claim(kind, None, (), _probabilities(found, null_misfit, kind))
     chosen = best
-    if pair is not None and pair.log_odds - best.log_odds > SECOND and pair.fitted.chi_held < best.fitted.chi_held:
+    if pair is not None and pair.log_odds - best.log_odds > SECOND and _much_better(best.fitted.chi_held, pair.fitted.chi_held):
         chosen = pair
     probabilities = _probabilities(found, null_misfit, "effect")
     if not explains(null_misfit, chosen.fitted.chi_held):
@@ -75,6 +76,11 @@ def explains(before: float, after: float) -> bool:
     if after >= before:
         return False
     return 1.0 - math.log(after) / math.log(before) >= EXPLAINED
+
+
+def _much_better(before: float, after: float) -> bool:
+    """Whether a second cause takes away its share of what the first leaves."""
+    return before > 1.0 and math.log(max(after, 1.0)) < (1.0 - MORE) * math.log(before)
 
 
 def kind_of(found: Found) -> str:

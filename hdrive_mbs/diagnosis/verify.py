@@ -30,7 +30,7 @@ def engine_difference(simulator: Simulator, fitted: Fitted) -> float:
     for column, measured in trial.measured.items():
         if measured.late or column not in own:
             continue
-        theirs = np.interp(trial.times[:samples], response.times, response[measured.channel])
+        theirs = response.at(measured.channel, trial.times[:samples])
         worst = max(worst, float(np.sqrt(np.mean((theirs - own[column][:samples]) ** 2))) / measured.total)
     return worst
 

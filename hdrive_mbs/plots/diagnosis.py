@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,6 +11,7 @@ from hdrive_mbs.diagnosis import sentences
 from hdrive_mbs.diagnosis.result import Diagnosis, Trace
 from hdrive_mbs.plots.diagnosis_domain import plot_domain
 from hdrive_mbs.plots.diagnosis_gap import plot_gap
+from hdrive_mbs.plots.diagnosis_look import FloatArray
 from hdrive_mbs.plots.diagnosis_ranking import plot_places, plot_ranking
 from hdrive_mbs.plots.diagnosis_traces import plot_traces
 from hdrive_mbs.plots.dispatch import plot
@@ -64,19 +64,18 @@ def _draw(name: str, result: Diagnosis, ax: Axes) -> None:
     elif name == "domain":
         plot_domain(result, ax)
     else:
-        worst = worst_first(result.traces)[0]
+        worst = worst_first(result)[0]
         plot_traces(result, ax, record=worst.record, column=worst.column, residuals=True)
         ax.set_ylabel(f"{readable(worst.column)} of\n{readable(worst.record)}:\n{ax.get_ylabel()}")
 
 
-def worst_first(traces: Sequence[Trace]) -> list[Trace]:
-    """Traces by how far the refitted nominal model is off, in noise units."""
-    return sorted(traces, key=_size, reverse=True)
+def worst_first(result: Diagnosis) -> list[Trace]:
+    """Traces by how far the refitted model is off in noise units; where it is the answer, by how far the nominal one was."""
+    return sorted(result.traces, key=lambda trace: _size(trace, trace.refit if result.causes else trace.nominal), reverse=True)
 
 
-def _size(trace: Trace) -> float:
-    """How far the refitted nominal model is off, in noise units."""
-    left = (trace.measured - trace.refit) / trace.noise
+def _size(trace: Trace, simulated: FloatArray) -> float:
+    left = (trace.measured - simulated) / trace.noise
     return float(np.nanmean(left**2)) if np.isfinite(left).any() else 0.0
 
 

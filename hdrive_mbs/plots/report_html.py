@@ -109,7 +109,7 @@ def _curves(diagnosis: Diagnosis) -> Iterator[str]:
     if not diagnosis.traces:
         return
     yield "<h2>Measured against simulated</h2>"
-    ordered = worst_first(diagnosis.traces)
+    ordered = worst_first(diagnosis)
     yield _trace(diagnosis, ordered[0])
     if any(varies(getattr(ordered[0], name), len(ordered[0].times)) for name in OVER):
         yield _residual(diagnosis, ordered[0])

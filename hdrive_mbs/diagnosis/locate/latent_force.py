@@ -57,9 +57,11 @@ def latent_force(
     made = []
     for k, way in enumerate(source.along or {"error": {}}):
         factors = source.along.get(way, {})
-        moved = [sum((f * motion.values[f"{kind}:{n}"] for n, f in factors.items()), np.zeros(trial.samples)) for kind in ("angle", "speed")]
+        moved = [
+            sum((f * motion.values[f"{kind}:{n}"] for n, f in factors.items()), np.zeros(trial.samples)) for kind in ("angle", "speed")
+        ]
         if not factors:
-            moved = [motion.reading(at), nothing]
+            moved = [motion.reading(at) if at in known else motion.columns[at], nothing]
         torque = motion.reading(f"{at}.torque") if way == "torsion" and f"{at}.torque" in known else nothing
         made.append(
             LatentForce(

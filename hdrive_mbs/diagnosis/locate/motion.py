@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.compiled.idle_coordinates import without_idle
-from hdrive_mbs.compiled.line import CompiledLine
+from hdrive_mbs.compiled.line import CompiledLine, CompiledRun, run_many
 from hdrive_mbs.diagnosis.following import following
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
+from hdrive_mbs.errors import LawError, ParameterError, SimulationError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Channel, Network
@@ -35,7 +37,7 @@ class KnownForce:
 
     def contribution(self, moment: Moment) -> dict[str, Value]:
         """Factors times the force at this time."""
-        value = np.interp(moment.time, self.times, self.force)  # type: ignore[arg-type]
+        value = np.interp(moment.time, self.times, self.force)
         return {name: factor * value for name, factor in self.factors.items()}
 
 
@@ -72,22 +74,64 @@ def motion_of(simulator: Simulator, number: int, hypothesis: Hypothesis, z: Floa
     forces : that act besides
     """
     trial = simulator.trials[number]
+    network = _network(trial, hypothesis, z)
+    names = [body.name for body in network.bodies]
+    watched = [Channel(f"angle:{name}", "", "", partial(Moment.angle, coordinate=name)) for name in names]
+    watched += [Channel(f"speed:{name}", "", "", partial(Moment.speed, coordinate=name)) for name in names]
+    watched += [Channel(f"state:{state.name}", "", "", partial(Moment.state, name=state.name)) for state in network.states]
+    wide = replace(network, channels=(*network.channels, *watched))
+    [run] = _runs(simulator, number, [_line(wide, trial, forces, [channel.name for channel in watched])], [(hypothesis, z)])
+    if isinstance(run, SimulationError):
+        raise run
+    fold = _fold(trial)
+    return Motion(trial, network, {channel.name: run.values[channel.name][::fold] for channel in watched}, _columns(trial, run))
+
+
+def columns_of(
+    simulator: Simulator, number: int, hypothesis: Hypothesis, points: Sequence[FloatArray], forces: Sequence[KnownForce] = ()
+) -> list[dict[str, FloatArray] | None]:
+    """Simulated columns of a trial at several points of the parameters; None where one cannot be run."""
+    trial = simulator.trials[number]
+    lines: list[CompiledLine | None] = []
+    for point in points:
+        try:
+            lines.append(_line(_network(trial, hypothesis, point), trial, forces, []))
+        except (ParameterError, LawError):
+            lines.append(None)
+    good = [k for k, line in enumerate(lines) if line is not None]
+    runs = _runs(simulator, number, [line for line in lines if line is not None], [(hypothesis, points[k]) for k in good])
+    found: list[dict[str, FloatArray] | None] = [None] * len(points)
+    for k, run in zip(good, runs, strict=True):
+        found[k] = None if isinstance(run, SimulationError) else _columns(trial, run)
+    return found
+
+
+def _network(trial: Trial, hypothesis: Hypothesis, z: FloatArray) -> Network:
     network = following(hypothesis.scene(trial.scene, z).network(), trial.motions)
     if network.is_lateral:
         network = without_idle(network, {**trial.angles, **{f"{name}_rate": value for name, value in trial.speeds.items()}})
-    watched = [_channel(f"angle:{body.name}", lambda m, n=body.name: m.angle(n)) for body in network.bodies]
-    watched += [_channel(f"speed:{body.name}", lambda m, n=body.name: m.speed(n)) for body in network.bodies]
-    watched += [_channel(f"state:{state.name}", lambda m, n=state.name: m.state(n)) for state in network.states]
-    wide = replace(network, channels=(*network.channels, *watched), elements=(*network.elements, *forces))
-    late = any(item.late for item in trial.measured.values())
-    fold = 2 if late else 1
-    line = CompiledLine(wide, [*(channel.name for channel in watched), *dict.fromkeys(item.channel for item in trial.measured.values())])
-    angles = simulator.start_of(number, hypothesis, z)
-    run = line.run(fold * trial.samples, trial.every / fold, step=simulator.step, angles=angles, speeds=trial.speeds)
-    values = {channel.name: run.values[channel.name][::fold] for channel in watched}
-    columns = {c: run.values[item.channel][1 if item.late else 0 :: fold] for c, item in trial.measured.items()}
-    return Motion(trial, network, values, columns)
+    return network
 
 
-def _channel(name: str, read: Callable[[Moment], Value]) -> Channel:
-    return Channel(name, "", "", read)
+def _line(network: Network, trial: Trial, forces: Sequence[KnownForce], more: Sequence[str]) -> CompiledLine:
+    pushed = replace(network, elements=(*network.elements, *forces))
+    return CompiledLine(pushed, [*more, *dict.fromkeys(item.channel for item in trial.measured.values())])
+
+
+def _runs(
+    simulator: Simulator, number: int, lines: Sequence[CompiledLine], points: Sequence[tuple[Hypothesis, FloatArray]]
+) -> list[CompiledRun | SimulationError]:
+    trial = simulator.trials[number]
+    fold = _fold(trial)
+    angles = [simulator.start_of(number, *point) if trial.settled else dict(trial.angles) for point in points]
+    return run_many(lines, fold * trial.samples, trial.every / fold, step=simulator.step, angles=angles, speeds=trial.speeds)
+
+
+def _fold(trial: Trial) -> int:
+    """Runs are sampled twice as often where a column is compared half a sample later."""
+    return 2 if any(item.late for item in trial.measured.values()) else 1
+
+
+def _columns(trial: Trial, run: CompiledRun) -> dict[str, FloatArray]:
+    fold = _fold(trial)
+    return {c: run.values[item.channel][1 if item.late else 0 :: fold] for c, item in trial.measured.items()}

@@ -34,7 +34,10 @@ class Response:
 
 
 def response(motion: Motion, spectra: Spectra) -> Response:
-    """Of all places of a trial: bodies, connections and the like, and sensors."""
+    """Of all places of a trial: bodies, connections and the like, and sensors.
+
+    A column that measures a channel without a sensor in the scene is a place by its own name.
+    """
     trial, network = motion.trial, motion.network
     given = sources(network)
     wide, names = pushed(network, given)
@@ -48,10 +51,14 @@ def response(motion: Motion, spectra: Spectra) -> Response:
     found = {source.at: transfer[..., [k for k, (place, _) in enumerate(names) if place == source.at]] for source in given}
     known = {channel.name: channel for channel in network.channels}
     readers = {}
-    for k, item in enumerate(trial.measured.values()):
-        if known[item.channel].reads:
-            error = np.zeros((*transfer.shape[:3], 1), complex)
-            error[:, :, k, 0] = spectra.whitening[..., k]
-            found[item.channel] = error
-            readers[item.channel] = Source(item.channel, {}, known[item.channel].unit)
+    for k, (column, item) in enumerate(trial.measured.items()):
+        channel = known.get(item.channel)
+        sensor = channel is not None and channel.reads is not None
+        if not sensor and item.channel.endswith(".torque"):
+            continue  # a command: what is wrong with it is a force at the motor
+        name = item.channel if sensor else column
+        error = np.zeros((*transfer.shape[:3], 1), complex)
+        error[:, :, k, 0] = spectra.whitening[..., k]
+        found[name] = error
+        readers[name] = Source(name, {}, channel.unit if channel is not None else "")
     return Response({source.at: source for source in given} | readers, found)

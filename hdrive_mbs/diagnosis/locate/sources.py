@@ -97,7 +97,7 @@ def pushed(network: Network, given: Sequence[Source]) -> tuple[Network, tuple[tu
     names = [(source.at, f"{PUSH}{source.at}:{way}", factors) for source in given for way, factors in source.along.items()]
     states = tuple(State(state, "", 0.0) for _, state, _ in names)
     elements = [item for _, state, factors in names for item in (Push(state, factors), StateRate(state, _nothing))]
-    made = replace(network, states=(*network.states, *states), elements=(*network.elements, *elements))  # type: ignore[arg-type]
+    made = replace(network, states=(*network.states, *states), elements=(*network.elements, *elements))
     return made, tuple((at, state) for at, state, _ in names)
 
 

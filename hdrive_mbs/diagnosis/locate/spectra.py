@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.locate.motion import Motion
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.locate.motion import KnownForce, Motion, columns_of
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.noise import Whitener
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
-from hdrive_mbs.errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -55,56 +54,59 @@ class Spectra:
         return np.diff(np.append(self.bands, len(self.frequencies)))
 
 
-def spectra(simulator: Simulator, fitted: Fitted, motions: Sequence[Motion]) -> tuple[tuple[Spectra, ...], FloatArray]:
-    """Of each trial, at the full sample rate, and the precision of the prior of each parameter.
+def spectra(
+    simulator: Simulator,
+    hypothesis: Hypothesis,
+    z: FloatArray,
+    motions: Sequence[Motion],
+    forces: Sequence[Sequence[KnownForce]] | None = None,
+) -> tuple[Spectra, ...]:
+    """Of each trial at the full sample rate.
 
-    After the search coordinates of the hypothesis come unknown offsets of columns that have one.
-
-    Raises AnalysisError where the fitted model cannot be run.
+    After the search coordinates of the hypothesis come unknown offsets of columns that have one, with precision 1.
+    motions : at z, with the forces of each trial, if there are any
     """
-    still = [replace(trial, measured={c: replace(m, offset=0.0) for c, m in trial.measured.items()}) for trial in simulator.trials]
-    full = Simulator(still, simulator.step)
-    rows = _slopes(full, fitted)
-    parameters = len(rows) - 1
-    for segment in full.segments:
-        trial = simulator.trials[segment.trial]
-        measured, values = trial.measured[segment.column], trial.columns[segment.column]
-        if measured.offset > 0.0:
-            size = min(measured.offset, UNKNOWN * measured.total)
-            row = np.zeros(full.size)
-            row[segment.span] = -_whitened(measured, np.where(np.isfinite(values), size, 0.0))
-            rows.append(row)
+    sizes = []
+    for k, motion in enumerate(motions):
+        for column, item in motion.trial.measured.items():
+            if item.offset > 0.0:
+                sizes.append((k, column, min(item.offset, UNKNOWN * item.total)))
     made = []
     for k, motion in enumerate(motions):
-        spans = [segment.span for segment in full.segments if segment.trial == k]
-        made.append(_of(motion, np.array([[row[span] for span in spans] for row in rows])))
-    return tuple(made), np.concatenate([fitted.hypothesis.precisions, np.ones(len(rows) - 1 - parameters)])
+        trial = motion.trial
+        rows = _slopes(simulator, k, hypothesis, z, motion, forces[k] if forces else ())
+        for number, column, size in sizes:
+            row = np.zeros(rows[0].shape)
+            if number == k:
+                there = np.isfinite(trial.columns[column])
+                row[list(trial.columns).index(column)] = -_whitened(trial.measured[column], np.where(there, size, 0.0))
+            rows.append(row)
+        made.append(_of(motion, np.array(rows)))
+    return tuple(made)
 
 
-def residuals(motion: Motion, like: Spectra) -> ComplexArray:
-    """Spectra of the residuals of another run of the same trial, (windows, bins, columns)."""
-    trial = motion.trial
-    there = {column: np.isfinite(values) for column, values in trial.columns.items()}
-    left = {column: np.where(there[column], values - motion.columns[column], 0.0) for column, values in trial.columns.items()}
-    rows = np.array([_whitened(trial.measured[column], values) for column, values in left.items()])
-    return np.asarray(np.moveaxis(windowed(rows, like.window, len(like.frequencies)), 0, 2) * like.quiet)
-
-
-def _slopes(full: Simulator, fitted: Fitted) -> list[FloatArray]:
-    """Residuals, and their slopes in each search coordinate."""
-    hypothesis, z = fitted.hypothesis, fitted.z
+def _slopes(
+    simulator: Simulator, number: int, hypothesis: Hypothesis, z: FloatArray, motion: Motion, forces: Sequence[KnownForce]
+) -> list[FloatArray]:
+    """Whitened residuals of a trial, and their slopes in each search coordinate: zero where they cannot be had."""
     steps = hypothesis.steps(z)
-    points = [z.copy()]
+    points = []
     for k, step in enumerate(steps):
         moved = z.copy()
         moved[k] += step
         if hypothesis.clipped(moved)[k] == z[k]:  # at its upper limit
             moved[k], steps[k] = z[k] - step, -step
         points.append(moved)
-    base, *others = full.residuals(hypothesis, points)
-    if base is None:
-        raise AnalysisError("The fitted model cannot be run with all samples; use a shorter step.")
-    return [base, *(np.zeros(full.size) if item is None else (item - base) / step for item, step in zip(others, steps, strict=True))]
+    base = _residuals(motion.trial, motion.columns)
+    found = columns_of(simulator, number, hypothesis, points, forces)
+    others = [None if item is None else _residuals(motion.trial, item) for item in found]
+    return [base, *(np.zeros(base.shape) if item is None else (item - base) / step for item, step in zip(others, steps, strict=True))]
+
+
+def _residuals(trial: Trial, columns: Mapping[str, FloatArray]) -> FloatArray:
+    """Whitened, (columns, samples); 0 where nothing was measured."""
+    left = {column: np.where(np.isfinite(values), values - columns[column], 0.0) for column, values in trial.columns.items()}
+    return np.array([_whitened(trial.measured[column], values) for column, values in left.items()])
 
 
 def _whitened(measured: Measured, values: FloatArray) -> FloatArray:
@@ -116,7 +118,7 @@ def _of(motion: Motion, rows: FloatArray) -> Spectra:
     trial = motion.trial
     window = min(WINDOW, trial.samples // 4 // 2 * 2)
     bins = int(HIGHEST * window) + 1
-    frequencies = 2.0 * np.pi * np.arange(bins) / (window * trial.every)
+    frequencies = np.asarray(2.0 * np.pi * np.arange(bins) / (window * trial.every), float)
     edges = [0, 1]
     while 2 * edges[-1] < bins:
         edges.append(2 * edges[-1])

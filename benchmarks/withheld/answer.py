@@ -1,0 +1,112 @@
+"""From a finding to the answer object of one case, in the names of the answer format."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from benchmarks.withheld.finding import Claimed, Finding
+from benchmarks.withheld.names import Label, Name, Names, verdict_of
+
+WORDS = ("none", "unknown")
+"""Entries of a ranking that are no causes."""
+
+
+def answer_of(case: str, finding: Finding, names: Names) -> dict[str, Any]:
+    """The answer.
+
+    A claim without a name is answered "unknown", with its place first in ``where``.  If a cause with a name is tied with it, that
+    one is claimed: the table of names says beforehand that it is more likely to be there.  Of two claimed causes the one
+    that explains more by itself decides: if it has a name, what has none beside it is left out; if not, the answer is "unknown".
+    """
+    claimed = _named(finding, names)
+    verdict = finding.verdict
+    if verdict not in WORDS:
+        verdict = _verdict([name for name, _ in claimed])
+    ranking = ranking_of(finding.ranking, names)
+    chances = {(item["effect"], item["at"]): item["probability"] for item in ranking}
+    return {
+        "case": case,
+        "verdict": verdict,
+        "effects": [
+            {"effect": name[0], "at": name[1], "probability": _chance(name, chances), "parameters": dict(item.parameters)}
+            for name, item in claimed
+        ],
+        "indistinguishable": [list(name) for name in _tied(finding, names)] if claimed else [],
+        "ranking": ranking,
+        "where": _where(finding, names, [name for name, _ in claimed]),
+        "gap": dict(finding.gap),
+        "seconds": finding.seconds,
+    }
+
+
+def failed_answer(case: str, error: str, seconds: float) -> dict[str, Any]:
+    """The answer to a case that could not be diagnosed."""
+    nothing: dict[str, list[Any]] = {"effects": [], "indistinguishable": [], "ranking": [], "where": []}
+    return {"case": case, "verdict": "unknown", **nothing, "gap": {}, "seconds": seconds, "error": error}
+
+
+def ranking_of(ranking: Mapping[Label, float], names: Names) -> list[dict[str, Any]]:
+    """Names by falling probability: labels with one name are added up, at the place of the most probable of them."""
+    total: dict[str, float] = {}
+    best: dict[str, tuple[float, str | None]] = {}
+    for label, probability in ranking.items():
+        name = names.name(label)
+        effect = label[0] if label[0] in WORDS else "unknown" if name is None else name[0]
+        at = None if label[0] in WORDS else names.place_of(label)
+        total[effect] = total.get(effect, 0.0) + probability
+        if effect not in best or probability > best[effect][0]:
+            best[effect] = probability, at
+    order = sorted(total, key=lambda effect: -total[effect])
+    return [{"effect": effect, "at": best[effect][1], "probability": total[effect]} for effect in order]
+
+
+def _named(finding: Finding, names: Names) -> list[tuple[Name, Claimed]]:
+    """Claimed causes with their names; empty where the answer is "unknown" or "none"."""
+    found = [(name, item) for item in finding.claimed if (name := names.name(item.label)) is not None]
+    if len(found) == len(finding.claimed):
+        return list(dict(reversed(found)).items())[::-1]
+    if not found:
+        return _instead(finding, names)
+    first = max(finding.claimed, key=lambda item: finding.ranking.get(item.label, 0.0))
+    return found if names.name(first.label) is not None else []
+
+
+def _instead(finding: Finding, names: Names) -> list[tuple[Name, Claimed]]:
+    """The most probable cause with a name among those that are tied with a claim that has none."""
+    tied = [label for label in finding.tied if names.name(label) is not None]
+    if not tied:
+        return []
+    best = max(tied, key=lambda label: finding.ranking.get(label, 0.0))
+    name = names.name(best)
+    assert name is not None
+    return [(name, Claimed(label=best))]
+
+
+def _verdict(claimed: list[Name]) -> str:
+    kinds = [verdict_of(effect) for effect, _ in claimed]
+    return "unknown" if not kinds else "effect" if "effect" in kinds else kinds[0]
+
+
+def _tied(finding: Finding, names: Names) -> list[Name]:
+    found = [name for label in finding.tied if (name := names.name(label)) is not None]
+    return list(dict.fromkeys(found))
+
+
+def _chance(name: Name, chances: Mapping[tuple[str, str | None], float]) -> float:
+    return max((value for (effect, _), value in chances.items() if effect == name[0]), default=0.0)
+
+
+def _where(finding: Finding, names: Names, claimed: list[Name]) -> list[dict[str, Any]]:
+    """Places of the claim first, then the located ones, then those of what was ranked."""
+    by_rank: dict[str, float] = {}
+    for label, probability in finding.ranking.items():
+        if label[0] not in WORDS:
+            by_rank[names.place_of(label)] = by_rank.get(names.place_of(label), 0.0) + probability
+    located: dict[str, float] = {}
+    for at, probability in finding.where.items():
+        located[names.place(at)] = located.get(names.place(at), 0.0) + probability
+    unnamed = [] if claimed else [names.place_of(item.label) for item in finding.claimed]
+    ranked = [] if finding.verdict == "none" else sorted(by_rank, key=lambda at: -by_rank[at])
+    order = dict.fromkeys([*(at for _, at in claimed), *unnamed, *sorted(located, key=lambda at: -located[at]), *ranked])
+    return [{"at": at, "probability": max(by_rank.get(at, 0.0), located.get(at, 0.0))} for at in order]

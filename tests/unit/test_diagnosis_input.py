@@ -1,0 +1,334 @@
+"""What cannot be diagnosed is refused early, with object, value, limit and way out."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+import pytest
+
+import hdrive_mbs as hm
+from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
+from hdrive_mbs.diagnosis.diagnose import diagnose
+from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.result import Diagnosis
+from hdrive_mbs.effects.bearing_cubic_stiffness import BearingCubicStiffness
+from hdrive_mbs.effects.effect import Effect, MemoryTorqueEffect, TorqueEffect
+from hdrive_mbs.effects.kinematic_error import KinematicError
+from hdrive_mbs.effects.torque_ripple import TorqueRipple
+from hdrive_mbs.expression import Value
+from hdrive_mbs.network.draft import Draft
+from hdrive_mbs.network.network import Network
+from hdrive_mbs.quantities import parameter
+from hdrive_mbs.records.record import Record
+from hdrive_mbs.records.repair import repaired
+from tests.unit.diagnosis_cases import DURATION, KNOWLEDGE, STEP, bench, quiet, records
+
+
+def run(found: Bench | None = None, given: tuple[Record, ...] | None = None, kinds: tuple[type[Effect], ...] = ()) -> Diagnosis:
+    return diagnose(found or bench(), quiet() if given is None else given, candidates=kinds, pictures=False, step=1e-3)
+
+
+def changed(name: str, change: Callable[[np.ndarray], np.ndarray], record: Record | None = None) -> tuple[Record, ...]:
+    """The quiet records, one column of the first of them (or of another record) changed."""
+    first = record or quiet()[0]
+    values = change(first[name].values.copy())
+    new = first.with_channels(item.replacing(values=values) if item.name == name else item for item in first)
+    return (new, *quiet()[1:])
+
+
+def refused(kind: type[Exception], *words: str, **given: object) -> None:
+    with pytest.raises(kind) as caught:
+        run(**given)  # type: ignore[arg-type]
+    text = str(caught.value)
+    for word in words:
+        assert word in text, text
+
+
+# -- records against the bench ----------------------------------------------------------------------------
+
+
+def test_a_record_without_an_input_names_it_and_what_there_is() -> None:
+    given = (quiet()[0].without("load_torque"),)
+    refused(hm.RecordError, "'staircase' has no column 'load_torque', which drives the scene", "It has: motor_torque", given=given)
+
+
+def test_a_record_without_any_measured_column_is_refused() -> None:
+    given = (quiet()[0].without("motor_torque", "motor_angle", "load_angle"),)
+    refused(hm.RecordError, "has no column 'motor_torque', which the bench measures", given=given)
+
+
+def test_a_record_without_one_of_several_measured_columns_is_used() -> None:
+    found = run(given=(quiet()[0].without("load_angle"), quiet()[1]))
+    assert found.verdict == "none"
+    assert ("staircase", "load_angle") not in [(gap.record, gap.column) for gap in found.gaps]
+
+
+def test_a_column_in_an_impossible_unit_is_refused() -> None:
+    wrong = quiet()[0].with_channels(item.replacing(unit="N m" if item.name == "motor_angle" else item.unit) for item in quiet()[0])
+    refused(hm.RecordError, "'motor_angle' is in N m, but 'motor_encoder'", "is in rad", "units={'motor_angle':", given=(wrong,))
+
+
+def test_an_input_in_an_impossible_unit_is_refused() -> None:
+    wrong = quiet()[0].with_channels(item.replacing(unit="1" if item.name == "load_torque" else item.unit) for item in quiet()[0])
+    refused(hm.UnitError, "'load_torque' is in no unit (1), but load.torque, which it drives, is in N m", given=(wrong,))
+
+
+def test_a_record_that_is_too_short_is_refused() -> None:
+    refused(hm.RecordError, "has 51 samples; a diagnosis needs at least 64", given=(quiet()[0].between(0.0, 0.05),))
+
+
+def test_no_records_are_refused() -> None:
+    refused(hm.ParameterError, "at least one record", given=())
+
+
+def test_two_records_of_one_name_are_refused() -> None:
+    refused(hm.ParameterError, "Two records are named 'staircase'", "record.replacing(name=", given=(quiet()[0], quiet()[0]))
+
+
+def test_a_saturated_sensor_is_refused() -> None:
+    given = changed("motor_torque", lambda values: np.clip(values, -0.2, 0.2))
+    refused(hm.RecordError, "motor_torque", "cut off at its largest value 0.2 N m", "saturated='drop'", given=given)
+
+
+def test_a_sensor_that_got_stuck_is_refused() -> None:
+    def stuck(values: np.ndarray) -> np.ndarray:
+        values[700:] = values[700]
+        return values
+
+    refused(hm.RecordError, "load_angle", "stands at", "for 901 samples", "stuck='drop'", given=changed("load_angle", stuck))
+
+
+def test_a_sensor_that_is_dead_all_along_is_refused() -> None:
+    given = changed("load_angle", lambda values: np.full_like(values, 0.25))
+    refused(hm.RecordError, "'load_angle' shows 0.25 rad all along", "moves by", "record.without('load_angle')", given=given)
+
+
+def test_records_in_which_nothing_moves_are_refused() -> None:
+    rng = np.random.default_rng(4)
+    still = quiet()[0]
+    for name in ("speed_reference", "load_torque"):
+        still = changed(name, np.zeros_like, still)[0]
+    for name, sigma in (("motor_torque", 2e-3), ("motor_angle", 2e-4), ("load_angle", 3e-6)):
+        still = changed(name, lambda values, size=sigma: size * rng.standard_normal(len(values)), still)[0]
+    refused(hm.RecordError, "Nothing moves in 'staircase'", "10 times its noise", "Record a motion", given=(still,))
+
+
+def test_a_constant_input_is_used_where_others_move() -> None:
+    load = quiet()[0]["load_torque"].values
+    assert np.ptp(load) == 0.0
+    assert run(given=quiet()[:1]).verdict == "none"
+
+
+def test_missing_values_are_refused_until_somebody_decides() -> None:
+    def holes(values: np.ndarray) -> np.ndarray:
+        values[300:420] = math.nan
+        return values
+
+    given = changed("load_angle", holes)
+    refused(hm.RecordError, "load_angle", "120 of 1601 values are missing", "not_finite='interpolate'", given=given)
+    kept = (repaired(given[0], not_finite="keep"), *given[1:])
+    found = run(given=kept)
+    assert found.verdict == "none"
+    assert abs(found.gap.refit.value - 1.0) < 0.06
+
+
+def test_missing_values_of_an_input_cannot_be_kept() -> None:
+    def holes(values: np.ndarray) -> np.ndarray:
+        values[300:420] = math.nan
+        return values
+
+    given = (repaired(changed("load_torque", holes)[0], not_finite="keep"),)
+    refused(hm.RecordError, "'load_torque' drives the scene", "120 of its 1601 values", "first at t = 0.3 s", given=given)
+
+
+def test_a_column_with_hardly_a_value_is_refused() -> None:
+    def holes(values: np.ndarray) -> np.ndarray:
+        values[12:] = math.nan
+        return values
+
+    given = (repaired(changed("load_angle", holes)[0], not_finite="keep"),)
+    refused(hm.RecordError, "'load_angle' has 12 values that a fit may see; needed are 16", given=given)
+
+
+def test_uneven_times_are_refused() -> None:
+    first = quiet()[0]
+    times = first.times.copy()
+    times[800:] += 0.4e-3
+    refused(hm.RecordError, "is not sampled evenly", "resample", given=(first.replacing(times=times),))
+
+
+def test_a_record_that_starts_at_another_speed_is_refused() -> None:
+    part = quiet()[0].between(0.6, 1.6)
+    refused(hm.RecordError, "'staircase' does not start like the scene", "'motor_angle' begins at", "rad/s", "Bench(speeds=", given=(part,))
+
+
+def test_the_way_out_for_a_record_that_starts_at_speed_works() -> None:
+    """From 0.3 s to 0.4 s the reference stands at 60 rad/s; the controller's integral is what the scene cannot be told."""
+    part = quiet()[1].between(0.55, DURATION)
+    speeds = {"motor": 40.0, "load": 0.8}
+    known = dataclasses.replace(bench(), speeds=speeds)
+    try:
+        run(known, (part,))
+    except hm.RecordError as error:
+        assert "does not start like the scene" not in str(error)
+
+
+# -- the bench itself ------------------------------------------------------------------------------------
+
+
+def test_knowledge_of_a_path_that_does_not_exist_is_refused() -> None:
+    with pytest.raises(hm.PlaceError, match=r"No path of 'J' 'motor\.inertja'.*motor\.inertia"):
+        bench(knowledge={"J": ("motor.inertja", 0.03)})
+
+
+def test_an_input_of_a_path_that_does_not_exist_is_refused() -> None:
+    wrong = Input(path="motor.reference", law=lambda t, v: hm.SpeedTable(times=t, speeds=v))
+    refused(hm.PlaceError, "motor.reference", found=dataclasses.replace(bench(), inputs={"speed_reference": wrong}))
+
+
+def test_a_measured_channel_that_does_not_exist_is_refused() -> None:
+    with pytest.raises(hm.PlaceError, match=r"channel of column 'motor_angle' 'motor\.angel'"):
+        dataclasses.replace(bench(), measured={"motor_angle": Measured(channel="motor.angel", noise=1e-4)})
+
+
+def test_a_relative_uncertainty_of_zero_is_refused() -> None:
+    known = dataclasses.replace(bench(), knowledge={"cubic": Uncertain(paths=("gear.stiffness.cubic",), sigma=0.1)})
+    refused(hm.ParameterError, "gear.stiffness.cubic = 0", "no factor changes 0", found=known)
+
+
+def test_a_parameter_that_is_uncertain_twice_is_refused() -> None:
+    twice = {"one": Uncertain(paths=("motor.inertia",), sigma=0.1), "two": Uncertain(paths=("motor.inertia",), sigma=0.2)}
+    refused(hm.ParameterError, "motor.inertia is uncertain twice", found=dataclasses.replace(bench(), knowledge=twice))
+
+
+def test_a_group_of_a_parameter_that_is_not_known_is_refused() -> None:
+    known = dataclasses.replace(bench(), together={"masses": ("motor_inertia", "nothing")})
+    refused(hm.PlaceError, "parameter of the group 'masses'", "'nothing'", found=known)
+
+
+def test_a_scene_whose_channels_no_column_bears_is_refused() -> None:
+    with pytest.raises(hm.RecordError, match="No column is named like a channel of scene 'small drive'"):
+        diagnose(bench().scene, quiet(), pictures=False)
+
+
+def test_without_uncertain_parameters_and_candidates_the_verdict_is_about_the_scene_as_it_is() -> None:
+    exact = dataclasses.replace(bench(), knowledge={})
+    assert run(exact, records(errors={})).verdict == "none"
+    found = run(exact, quiet())
+    assert found.verdict == "unknown"
+    assert found.gap.effect.value > 10.0
+    assert found.parameters == found.causes == ()
+
+
+def test_without_candidates_parameters_alone_are_refitted() -> None:
+    found = run()
+    assert found.verdict == "none"
+    assert {item.effect for item in found.ranking} <= {"none", "parameter"}
+    assert {item.name for item in found.parameters} == set(KNOWLEDGE)
+
+
+# -- candidates ------------------------------------------------------------------------------------------
+
+
+def test_a_candidate_without_a_place_in_the_scene_is_left_out() -> None:
+    found = run(kinds=(BearingCubicStiffness, KinematicError), given=quiet())
+    assert found.verdict == "none"
+    assert "bearing_cubic_stiffness" not in {item.effect for item in found.ranking}
+
+
+def test_what_is_no_effect_class_is_refused() -> None:
+    refused(hm.ParameterError, "is no effect class", kinds=(hm.Motor,))
+    refused(hm.ParameterError, "is no effect class", kinds=(KinematicError(amplitude=1e-4),))
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Own(TorqueEffect):
+    """An effect of a user's own."""
+
+    size: float = parameter("N m", "size", low=0.0, typical=(1e-3, 1.0))
+
+    def torque(self, time: Value, angle: Value, speed: Value) -> Value:
+        return -self.size * np.tanh(speed)
+
+
+class PlacesRaise(_Own):
+    @classmethod
+    def places(cls, network: Network) -> tuple[str, ...]:
+        raise ZeroDivisionError("no bodies")
+
+
+class ApplyRaises(_Own):
+    def apply(self, draft: Draft, place: str, name: str) -> None:
+        raise AttributeError("'Draft' object has no attribute 'force'")
+
+
+class LawRaises(_Own):
+    def torque(self, time: Value, angle: Value, speed: Value) -> Value:
+        return -self.size if speed > 0.0 else self.size  # type: ignore[operator]
+
+
+class LawIsNotFinite(_Own):
+    def torque(self, time: Value, angle: Value, speed: Value) -> Value:
+        return -self.size * np.sqrt(speed - 1e6)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StateIsNotFinite(MemoryTorqueEffect):
+    """A state that runs away."""
+
+    size: float = parameter("N m", "size", low=0.0, typical=(1e-3, 1.0))
+    family: ClassVar[str] = "runaway"
+
+    def states(self) -> Mapping[str, str]:
+        return {"level": "1"}
+
+    def state_rate(self, name: str, time: Value, angle: Value, speed: Value, state: Mapping[str, Value]) -> Value:
+        return 1.0 + 1e3 * state["level"] ** 2
+
+    def torque(self, time: Value, angle: Value, speed: Value, state: Mapping[str, Value]) -> Value:
+        return -self.size * state["level"]
+
+
+class NothingToSearch(TorqueEffect):
+    def torque(self, time: Value, angle: Value, speed: Value) -> Value:
+        return 0.0
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        (PlacesRaise, ("PlacesRaise.places raised ZeroDivisionError: no bodies", "leave the class out")),
+        (ApplyRaises, ("ApplyRaises at ", "raised AttributeError", "no attribute 'force'")),
+        (LawRaises, ("LawRaises at ", "its law raised", "no if, min", "leave the class out")),
+        (LawIsNotFinite, ("LawIsNotFinite at ", "not finite", "size=0.001")),
+        (StateIsNotFinite, ("StateIsNotFinite at ", "not finite")),
+        (NothingToSearch, ("NothingToSearch has nothing to search", "typical=(low, high)")),
+    ],
+)
+def test_an_effect_of_a_users_own_that_cannot_work_is_refused_by_name(kind: type[Effect], words: tuple[str, ...]) -> None:
+    refused(hm.ParameterError, *words, kinds=(kind, KinematicError))
+
+
+def test_an_effect_of_a_users_own_that_works_takes_part_without_registration() -> None:
+    found = run(kinds=(_Own,), given=records((_Own(size=0.05), "motor")))
+    assert [(cause.effect, cause.at) for cause in found.causes] == [("_own", "motor")]
+    assert found.causes[0].parameters[0].value == pytest.approx(0.05, rel=0.01)
+
+
+def test_where_all_candidates_fail_the_answer_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A law of the library that overflows with its start values: the search goes on without it."""
+    monkeypatch.setattr(TorqueRipple, "delivered", lambda self, time, speed, torque: np.exp(1e6 * (1.0 + time)) * torque)
+    found = run(kinds=(TorqueRipple,))
+    assert found.verdict == "none"
+    assert any("None of the 1 candidates could be run" in note and "torque_ripple at motor" in note for note in found.notes)
+
+
+def test_a_nominal_scene_that_cannot_be_simulated_is_refused() -> None:
+    stiff = bench().scene.replacing({"gear.stiffness.linear": 1.2e13})
+    with pytest.raises(hm.AnalysisError, match="nominal scene cannot be simulated through the records"):
+        diagnose(dataclasses.replace(bench(), scene=stiff), quiet(), candidates=(), pictures=False, step=STEP)

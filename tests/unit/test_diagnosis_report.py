@@ -1,0 +1,220 @@
+"""The report of a diagnosis in text and JSON: it says what was found, and what cannot be said."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from hdrive_mbs.diagnosis import readable, sentences
+from hdrive_mbs.diagnosis.report_json import VERSION, read_report_json, report_document, write_report_json
+from hdrive_mbs.diagnosis.report_text import report_text, write_report
+from hdrive_mbs.diagnosis.result import Diagnosis, DomainBin, Estimate
+from hdrive_mbs.errors import FileFormatError
+from hdrive_mbs.scene_file import scene_from_dict
+from tests.unit import diagnosis_samples
+from tests.unit.diagnosis_samples import NAN, SAMPLES
+
+
+@pytest.mark.parametrize(
+    ("sample", "first"),
+    [
+        ("none", "No gap beyond noise and parameter tolerance. Probability 0.97."),
+        ("effect", "An effect is missing from the model: friction at load. Probability 0.93."),
+        ("parameter", "A parameter is off by more than its tolerance: parameter load inertia. Probability 0.88."),
+        ("sensor", "A sensor is off: sensor gain at torque_sensor. Probability 0.99."),
+        ("unknown", "A gap that nothing in the library explains. Probability 0.90."),
+        ("two", "Two causes: friction at load and kinematic error at gear. Probability 0.93 and 0.81."),
+    ],
+)
+def test_report_begins_with_the_verdict_in_words(sample: str, first: str) -> None:
+    lines = report_text(SAMPLES[sample]()).splitlines()
+    assert lines[0] == "Diagnosis of 'drive bench' by 3 records: staircase, load_cycle and sweep"
+    assert lines[3] == first
+
+
+@pytest.mark.parametrize("sample", SAMPLES)
+def test_report_has_no_raw_nan_or_infinity_and_no_blank_at_line_ends(sample: str) -> None:
+    text = report_text(SAMPLES[sample]())
+    assert text.endswith("\n")
+    assert not any(line.endswith(" ") for line in text.splitlines())
+    words = text.replace("(", " ").replace(")", " ").replace(",", " ").split()
+    assert not {"nan", "inf", "-inf", "None"} & set(words)
+
+
+def test_print_of_a_diagnosis_is_its_report() -> None:
+    answer = SAMPLES["effect"]()
+    assert str(answer) == report_text(answer)
+
+
+def test_identified_parameters_have_an_interval_or_are_called_not_identifiable() -> None:
+    lines = report_text(SAMPLES["effect"]()).splitlines()
+    assert any("friction.coulomb" in line and "6.03 (5.91 to 6.15) N m" in line for line in lines)
+    assert any("friction.stiction" in line and "not identifiable from these records" in line for line in lines)
+
+
+def test_gap_is_told_in_noise_and_in_the_unit_of_its_column() -> None:
+    # motor_angle: noise 1.1e-4 rad, so a misfit of 34.2 noise deviations is 3.76 mrad; bounds 0.93 and 1.09 of that
+    lines = [line for line in report_text(SAMPLES["effect"]()).splitlines() if line.startswith("  staircase, motor_angle")]
+    assert "34.2 (31.8 to 37.3)" in lines[0]
+    assert "3.76 (3.50 to 4.10) mrad" in lines[1]
+
+
+def test_closed_share_is_that_of_the_energy_above_the_noise() -> None:
+    answer = SAMPLES["effect"]()
+    # 1 - (5.1^2 - 1)/(34.2^2 - 1) and 1 - (1.02^2 - 1)/(34.2^2 - 1)
+    assert answer.closed_by_refit == pytest.approx(1.0 - 25.01 / 1168.64, rel=1e-12)
+    assert answer.closed == pytest.approx(1.0 - 0.0404 / 1168.64, rel=1e-12)
+    assert "refitting alone closes 97 % and the cause closes over 99.99 %" in report_text(answer)
+
+
+def test_a_nominal_model_at_the_noise_has_nothing_to_close() -> None:
+    answer = dataclasses.replace(SAMPLES["none"](), gaps=diagnosis_samples.gaps(0.99, 0.98, 0.98))
+    assert math.isnan(answer.closed)
+    assert "there is no gap to close" in report_text(answer)
+
+
+def test_what_cannot_be_told_apart_is_named_once_and_never_the_claim_itself() -> None:
+    tied = SAMPLES["tied"]()
+    wanted = "These records cannot tell friction at load from hysteresis at gear or friction at output_shaft."
+    assert wanted in report_text(tied)
+    with_itself = dataclasses.replace(tied, indistinguishable=(("friction", "load"), *tied.indistinguishable))
+    assert wanted in report_text(with_itself)
+    assert sentences.ambiguity(dataclasses.replace(tied, indistinguishable=(("friction", "load"),))) == ""
+
+
+def test_next_record_says_whether_it_would_be_enough() -> None:
+    text = " ".join(report_text(SAMPLES["tied"]()).split())
+    assert "Record 'slow reversals' would tell friction at load from hysteresis at gear (detectability 410; 25 is enough)." in text
+    assert "Record 'sweep' would not tell friction at load from hysteresis at gear (detectability 11.0; 25 is needed)." in text
+
+
+def test_parameters_are_told_in_sigmas_of_their_tolerance_the_furthest_first() -> None:
+    estimate = Estimate(name="inertia", unit="kg m^2", doc="", value=2.0 * math.exp(0.06), low=2.0, high=2.2, nominal=2.0, tolerance=0.03)
+    assert sentences.moved(estimate) == pytest.approx(2.0)  # ln(value/nominal)/tolerance
+    moved = sentences.moved_parameters(SAMPLES["effect"]())
+    assert [round(abs(z), 6) for _, z in moved] == sorted((round(abs(z), 6) for _, z in moved), reverse=True)
+    assert all(abs(z) > 1.0 for _, z in moved)
+    assert len(moved) == 8  # of 14, every first and second of four moves by 2.4 and -1.3 sigma
+
+
+def test_domain_names_the_part_that_holds_more_than_its_share() -> None:
+    said = sentences.domain_sentences(SAMPLES["effect"]().domain)
+    # of eight equal bins with 12, 5, 2, 1, 0.5, 0.3, 0.1 the first holds 12/20.9 = 57 %
+    assert said[0].startswith("Over speed: largest 0 to 20 rad/s, where 12 % of the samples hold 57 % of the misfit")
+    assert said[2].startswith("Over order: largest order 2,")
+
+
+def test_domain_without_a_preference_is_called_even() -> None:
+    bins = [DomainBin(over="time", unit="s", low=float(k), high=k + 1.0, excess=3.0 + 0.1 * k, after=NAN, samples=100) for k in range(4)]
+    assert sentences.domain_sentences(bins)[0].startswith("Over time: spread evenly")
+    none = [dataclasses.replace(item, excess=-0.01) for item in bins]
+    assert sentences.domain_sentences(none) == ("Over time: nothing above the noise.",)
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "unit", "text"),
+    [
+        (2.0312, 1.98, 2.08, "N m", "2.03 (1.98 to 2.08) N m"),
+        (3.1e-4, 3.0e-4, 3.3e-4, "rad", "0.310 (0.300 to 0.330) mrad"),
+        (4.2e-5, 4.1e-5, 4.4e-5, "m", "42.0 (41.0 to 44.0) um"),
+        (30776.0, 30500.0, 31054.0, "N m/rad", "30780 (30500 to 31050) N m/rad"),
+        (2.0e-5, 1.9e-5, 2.1e-5, "kg m", "2.00e-05 (1.90e-05 to 2.10e-05) kg m"),
+        (5.0, NAN, NAN, "1", "5.000 (no interval)"),
+        (NAN, NAN, NAN, "N m", "-"),
+        (0.0, 0.0, 0.0, "N m", "0 (0 to 0) N m"),
+    ],
+)
+def test_intervals_have_as_many_digits_as_they_allow(value: float, low: float, high: float, unit: str, text: str) -> None:
+    assert readable.interval(value, low, high, unit) == text
+
+
+def test_neither_shares_nor_probabilities_are_rounded_to_certainty() -> None:
+    assert readable.percent(0.99999) == "over 99.99 %"
+    assert readable.percent(0.9996) == "99.96 %"
+    assert readable.percent(1.0) == "100 %"
+    assert readable.probability(0.9999) == "> 0.99"
+    assert readable.probability(1.0) == "> 0.99"
+    assert readable.probability(1e-6) == "< 0.01"
+
+
+def test_text_file_holds_the_report(tmp_path: Path) -> None:
+    answer = SAMPLES["two"]()
+    assert write_report(answer, tmp_path / "a" / "d.txt").read_text("utf-8") == report_text(answer)
+
+
+@pytest.mark.parametrize(("sample", "series"), [*((name, False) for name in SAMPLES), ("two", True)])
+def test_json_is_strict_and_comes_back_as_written(sample: str, series: bool, tmp_path: Path) -> None:
+    answer = SAMPLES[sample]()
+    path = write_report_json(answer, tmp_path / "d.json", series=series)
+
+    def refused(text: str) -> Any:
+        raise AssertionError(f"{text} is no JSON")
+
+    json.loads(path.read_text("utf-8"), parse_constant=refused)
+    found = read_report_json(path)
+    assert found == report_document(answer, series=series)
+    assert series == ("traces" in found)
+    assert found["verdict"] == answer.verdict
+    assert found["schema_version"] == VERSION
+    assert len(found["ranking"]) == len(answer.ranking)
+
+
+def test_json_keeps_every_digit_and_the_scene(tmp_path: Path) -> None:
+    answer = SAMPLES["effect"]()
+    found = read_report_json(write_report_json(answer, tmp_path / "d.json"))
+    assert found["causes"][0]["parameters"][2]["value"] == 0.021
+    assert found["gaps"][1]["in_unit"]["nominal"]["value"] == 1.1e-4 * 34.2
+    assert found["parameters"][0]["moved_sigmas"] == pytest.approx(2.4)
+    assert scene_from_dict(found["improved_scene"]) == answer.improved
+
+
+def test_json_writes_null_for_what_is_not_a_number() -> None:
+    found = report_document(SAMPLES["without_numbers"]())
+    assert found["causes"][0]["probability"] is None
+    assert found["causes"][0]["parameters"][0]["high"] is None
+    assert found["gaps"][0]["refit"] == {"value": None, "low": None, "high": None}
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("{", "cannot be parsed"),
+        ("[]", "is no report of a diagnosis"),
+        ('{"schema": "other"}', "is no report of a diagnosis"),
+        ('{"schema": "hdrive-mbs diagnosis", "schema_version": 99}', "reads up to 1. Install a later"),
+        ('{"schema": "hdrive-mbs diagnosis"}', "schema_version None"),
+    ],
+)
+def test_a_file_that_is_no_report_is_refused(text: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "d.json").write_text(text)
+    with pytest.raises(FileFormatError, match=words):
+        read_report_json(tmp_path / "d.json")
+
+
+def test_a_missing_report_is_named(tmp_path: Path) -> None:
+    with pytest.raises(FileFormatError, match=r"none\.json: cannot be read"):
+        read_report_json(tmp_path / "none.json")
+
+
+def test_a_failed_write_leaves_the_older_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = write_report_json(SAMPLES["effect"](), tmp_path / "d.json")
+    before = path.read_bytes()
+
+    def broken(*given: object) -> None:
+        raise OSError("disc full")
+
+    monkeypatch.setattr("os.replace", broken)
+    with pytest.raises(FileFormatError, match=r"d\.json"):
+        write_report_json(SAMPLES["none"](), path)
+    assert path.read_bytes() == before
+    assert [item.name for item in tmp_path.iterdir()] == ["d.json"]
+
+
+def test_reports_do_not_depend_on_the_order_in_which_samples_are_made() -> None:
+    answer: Diagnosis = SAMPLES["effect"]()
+    assert report_text(answer) == report_text(SAMPLES["effect"]())

@@ -1,0 +1,303 @@
+"""A diagnosis that is interrupted goes on where it was; its worker processes end with it."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hdrive_mbs as hm
+from hdrive_mbs.diagnosis.digest import digest
+from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.journal import Journal
+from hdrive_mbs.diagnosis.packing import packed, unpacked
+from hdrive_mbs.diagnosis.result import Diagnosis
+from hdrive_mbs.diagnosis.screening import Look, Screen
+from hdrive_mbs.diagnosis.team import Team
+from hdrive_mbs.diagnosis.unknowns import Factor
+from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.effects.viscous_drag import ViscousDrag
+from tests.unit import diagnosis_job as job
+from tests.unit.diagnosis_cases import bench, quiet, records
+
+HERE = Path(__file__).parent
+
+OWN = """
+from dataclasses import dataclass
+from typing import ClassVar
+import numpy as np
+from hdrive_mbs.effects.effect import TorqueEffect
+from hdrive_mbs.quantities import parameter
+
+@dataclass(frozen=True, kw_only=True)
+class Own(TorqueEffect):
+    '''A drag that grows with the square root of the speed.'''
+    family: ClassVar[str] = "own_drag"
+    size: float = parameter("N m", "drag at 1 rad/s", low=0.0, typical=(1e-3, 10.0))
+
+    def torque(self, time, angle, speed):
+        return -self.size * np.tanh(speed) * np.sqrt(1.0 + np.abs(speed))
+"""
+
+
+def started(folder: Path, *arguments: str) -> subprocess.Popen[str]:
+    """The small diagnosis as a process of its own, in a group of its own."""
+    given = [str(folder), *arguments]
+    return subprocess.Popen(
+        [sys.executable, str(HERE / "diagnosis_job.py"), *given],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=folder,
+        env={**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(HERE.parents[1])},
+        start_new_session=True,
+    )
+
+
+def left_in_group(group: int) -> list[int]:
+    """Processes of a group that still run (zombies do not)."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*"):
+        try:
+            fields = (entry / "stat").read_text().rpartition(")")[2].split()
+        except OSError:
+            continue
+        if int(fields[2]) == group and fields[0] != "Z":
+            found.append(int(entry.name))
+    return found
+
+
+def gone(group: int, patience: float = 15.0) -> bool:
+    """Whether a group has no processes left, after a while."""
+    end = time.monotonic() + patience
+    while time.monotonic() < end:
+        if not left_in_group(group):
+            return True
+        time.sleep(0.1)
+    return False
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Diagnosis]:
+    """The folder of the small diagnosis without an interruption, and its answer."""
+    folder = tmp_path_factory.mktemp("whole")
+    return folder, job.run(folder)
+
+
+@pytest.fixture
+def whole(finished: tuple[Path, Diagnosis]) -> Diagnosis:
+    return finished[1]
+
+
+@pytest.fixture
+def copied(finished: tuple[Path, Diagnosis], tmp_path: Path) -> Path:
+    """A copy of that folder."""
+    return Path(shutil.copytree(finished[0], tmp_path / "copied"))
+
+
+class Counter:
+    """Counts looks while they are made."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.looks = 0
+        look = Screen.look
+
+        def counted(screen: Screen, hypotheses: tuple[Hypothesis, ...]) -> Look | None:
+            self.looks += 1
+            return look(screen, hypotheses)
+
+        monkeypatch.setattr(Screen, "look", counted)
+
+
+def same(one: Diagnosis, other: Diagnosis) -> bool:
+    parts = ("verdict", "causes", "ranking", "indistinguishable", "gaps", "parameters")
+    return all(getattr(one, part) == getattr(other, part) for part in parts)
+
+
+def test_a_killed_diagnosis_goes_on_from_its_folder_and_gives_the_same_answer(
+    tmp_path: Path, whole: Diagnosis, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    process = started(tmp_path, "1", job.SECOND, "SIGKILL")
+    out, err = process.communicate(timeout=120)
+    assert process.returncode == -signal.SIGKILL, err
+    assert "stage" in out
+    counter = Counter(monkeypatch)
+    resumed = job.run(tmp_path)
+    assert counter.looks == 0  # all had been made before the signal
+    assert any("were taken from" in note for note in resumed.notes)
+    assert same(resumed, whole)
+
+
+def test_a_finished_diagnosis_is_read_from_its_folder(copied: Path, whole: Diagnosis, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not any("were taken from" in note for note in whole.notes)
+    monkeypatch.setattr("hdrive_mbs.diagnosis.search.fit", None)  # would raise if it were called
+    counter = Counter(monkeypatch)
+    assert same(job.run(copied), whole)
+    assert counter.looks == 0
+
+
+def test_other_inputs_begin_anew_and_say_so(tmp_path: Path, whole: Diagnosis) -> None:
+    top = tmp_path / "work"
+    first = Journal(top, {"records": records(seed=1), "bench": bench()})
+    again = Journal(top, {"records": records(seed=1), "bench": bench()})
+    other = Journal(top, {"records": records(seed=2), "bench": bench()})
+    assert first.folder == again.folder != other.folder
+    assert first.notes == again.notes == ()
+    assert other.notes == (f"{top} holds work on other inputs (records differ): this diagnosis was begun anew.",)
+
+
+def test_a_damaged_answer_is_worked_out_again(copied: Path, whole: Diagnosis) -> None:
+    answers = sorted(copied.glob("*/*.npz"))
+    answers[0].write_bytes(answers[0].read_bytes()[:100])
+    answers[1].write_bytes(b"no archive")
+    assert same(job.run(copied), whole)
+
+
+def test_an_answer_comes_back_from_its_file_to_the_last_bit(tmp_path: Path) -> None:
+    factor = Factor("motor.inertia", "J", {"motor.inertia": 1.2e-3}, 0.03)
+    hypothesis = Hypothesis((factor,), (Added(ViscousDrag(coefficient=0.1 + 0.2), "load", "viscous_drag"),), {"J": 10.0})
+    look = Look(hypothesis, np.array([0.1, np.pi]), float("inf"), np.array([1e-300, np.nan]))
+    journal = Journal(tmp_path, {})
+    journal.write("key", look)
+    answer = journal.read("key", (hypothesis,))
+    assert answer is not None
+    found = answer[0]
+    assert isinstance(found, Look)
+    assert found.hypothesis.added[0].effect == hypothesis.added[0].effect
+    assert (found.hypothesis.factors, found.hypothesis.loose, found.cost) == (hypothesis.factors, hypothesis.loose, look.cost)
+    assert np.array_equal(found.z, look.z)
+    assert np.array_equal(found.residuals, look.residuals, equal_nan=True)
+    journal.write("nothing", None)
+    assert journal.read("nothing", hypothesis) == (None,)
+    assert journal.read("never asked", hypothesis) is None
+
+
+def test_a_file_of_answers_brings_no_class_of_its_own(tmp_path: Path) -> None:
+    factor = Factor("motor.inertia", "J", {"motor.inertia": 1.2e-3}, 0.03)
+    effect = Hypothesis((factor,), (Added(ViscousDrag(coefficient=0.3), "load", "viscous_drag"),))
+    journal = Journal(tmp_path, {})
+    journal.write("key", effect)
+    assert journal.read("key", effect) is not None
+    assert journal.read("key", Hypothesis((factor,))) is None  # nobody asked for a ViscousDrag
+
+
+def test_content_counts_for_a_digest_and_not_how_it_came_about() -> None:
+    one, other = records(seed=1), records(seed=1)
+    assert digest(one, bench()) == digest(other, bench())
+    assert digest(one) != digest(records(seed=3))
+    assert digest(bench()) != digest(bench(columns=("motor_angle",)))
+    assert digest((1.0,)) != digest((np.nextafter(1.0, 2.0),))
+    assert digest({"a": 1}, {"b": 2}) != digest({"a": 1, "b": 2})
+
+
+def test_two_processes_give_the_answer_of_one_and_read_an_effect_from_its_file(tmp_path: Path, whole: Diagnosis) -> None:
+    file = tmp_path / "my_effect.py"
+    file.write_text(OWN)
+    kinds = (*job.KINDS, job.from_file(file))
+    try:
+        two, one = job.run(tmp_path / "two", 2, kinds=kinds), job.run(tmp_path / "one", 1, kinds=kinds)
+        assert same(one, two)
+        assert [(cause.effect, cause.at) for cause in two.causes] == [(cause.effect, cause.at) for cause in whole.causes]
+    finally:
+        del sys.modules["effect_of_a_user"]
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="reads the table of processes of Linux")
+@pytest.mark.parametrize("number", ["SIGINT", "SIGKILL"])
+def test_no_process_is_left_when_a_diagnosis_is_interrupted(tmp_path: Path, number: str) -> None:
+    process = started(tmp_path, "2", job.SECOND, number)
+    out, err = process.communicate(timeout=120)
+    assert "stage" in out, err
+    assert process.returncode != 0
+    assert gone(process.pid), left_in_group(process.pid)
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="reads the table of processes of Linux")
+def test_ctrl_c_ends_all_processes_and_keeps_what_is_done(tmp_path: Path, whole: Diagnosis) -> None:
+    """A terminal sends the signal to the whole group."""
+    process = started(tmp_path, "2", "", "")
+    end = time.monotonic() + 60.0
+    while len(list(tmp_path.glob("*/*.npz"))) < 4 and time.monotonic() < end:
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert "KeyboardInterrupt" in err
+    assert out == ""
+    assert "diagnosis worker" not in err.lower()
+    assert gone(process.pid), left_in_group(process.pid)
+    assert same(job.run(tmp_path), whole)
+
+
+def die(shared: object, item: int) -> int:
+    if item == 1:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return item
+
+
+def fail(shared: object, item: int) -> int:
+    raise hm.ParameterError(f"item {item} is wrong")
+
+
+def double(shared: int, item: int) -> int:
+    return shared * item
+
+
+@pytest.fixture
+def team() -> Iterator[Team]:
+    with Team(2) as made:
+        yield made
+
+
+def test_a_worker_that_dies_is_named_with_the_way_out(team: Team) -> None:
+    with pytest.raises(hm.AnalysisError, match=r"died \(signal SIGKILL\) at work on int; if memory was short, use fewer workers"):
+        team.map(die, None, [0, 1, 2])
+
+
+def test_an_error_in_a_worker_comes_back_as_it_is_with_its_lines(team: Team) -> None:
+    with pytest.raises(hm.ParameterError, match="is wrong") as caught:
+        team.map(fail, None, [0, 1])
+    assert any("in fail" in note for note in caught.value.__notes__)
+
+
+def test_answers_come_in_the_order_of_the_questions_and_a_team_goes_on(team: Team) -> None:
+    told: list[tuple[int, int]] = []
+    assert team.map(double, 2, list(range(9)), lambda done, total: told.append((done, total))) == [2 * k for k in range(9)]
+    assert told == [(k, 9) for k in range(10)]
+    assert team.map(double, 3, [1, 2]) == [3, 6]
+
+
+def test_an_effect_that_no_process_could_read_is_refused_with_the_way_out() -> None:
+    class Local(ViscousDrag):
+        """Inside a function."""
+
+    with pytest.raises(hm.ParameterError, match=r"inside a function .* at the top of a file, or use workers=1"):
+        packed(Local)
+    kind: type[Effect] = unpacked(packed(ViscousDrag))
+    assert kind is ViscousDrag
+
+
+def test_a_script_without_its_main_line_is_told_so(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text("from hdrive_mbs.diagnosis.team import Team\nwith Team(2) as team:\n    team.map(max, 1, [1, 2])\n")
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=120)
+    assert "needs the line if __name__ == '__main__'" in done.stderr
+
+
+def test_a_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "work").write_text("")
+    with pytest.raises(hm.FileFormatError, match="is a file; folder= must be a folder"):
+        Journal(tmp_path / "work", {})
+
+
+def test_inputs_that_made_a_folder_are_said_in_it(tmp_path: Path) -> None:
+    journal = Journal(tmp_path, {"records": quiet()})
+    assert set(json.loads((journal.folder / "inputs.json").read_text())) == {"records", "program"}
