@@ -103,6 +103,7 @@ from hdrive_mbs.effects.coupling_backlash import CouplingBacklash as CouplingBac
 from hdrive_mbs.effects.crack_effect import CrackEffect as CrackEffect
 from hdrive_mbs.effects.dahl_friction import DahlFriction as DahlFriction
 from hdrive_mbs.effects.dahl_hysteresis import DahlHysteresis as DahlHysteresis
+from hdrive_mbs.effects.damped_clearance import DampedClearance as DampedClearance
 from hdrive_mbs.effects.dynamic_unbalance import DynamicUnbalance as DynamicUnbalance
 from hdrive_mbs.effects.eccentric_load import EccentricLoad as EccentricLoad
 from hdrive_mbs.effects.effect import Effect as Effect
@@ -138,6 +139,7 @@ from hdrive_mbs.effects.motor_effect import MotorEffect as MotorEffect
 from hdrive_mbs.effects.motor_scale import MotorScale as MotorScale
 from hdrive_mbs.effects.oil_whirl import OilWhirl as OilWhirl
 from hdrive_mbs.effects.one_sided_stiffness import OneSidedStiffness as OneSidedStiffness
+from hdrive_mbs.effects.phased_crack import PhasedCrack as PhasedCrack
 from hdrive_mbs.effects.power_drag import PowerDrag as PowerDrag
 from hdrive_mbs.effects.presliding_friction import PreslidingFriction as PreslidingFriction
 from hdrive_mbs.effects.probe_cross_talk import ProbeCrossTalk as ProbeCrossTalk

@@ -431,7 +431,11 @@ STEP = 1.0 / 12000.0
 NAMES: dict[tuple[str, str], tuple[str, str]] = {
     **{("probe_runout", f"rotor_{k}"): ("probe_runout", f"probe_rotor_{k}") for k in (1, 2)},
     **{("support_stiffness", f"bearing_{k}"): ("parameter_support_stiffness", f"support_{k}") for k in (1, 2)},
-    **{(f"bearing_{what}", f"bearing_{k}"): (f"parameter_bearing_{what}", f"bearing_{k}") for k in (1, 2) for what in ("stiffness", "damping")},
+    **{
+        (f"bearing_{what}", f"bearing_{k}"): (f"parameter_bearing_{what}", f"bearing_{k}")
+        for k in (1, 2)
+        for what in ("stiffness", "damping")
+    },
     **{(family, f"bearing_{k}"): (family, f"support_{k}") for k in (1, 2) for family in ("hidden_mode_support", "looseness")},
     **{("crack", section): ("crack", "shaft") for section in SECTIONS},
     ("misalignment", "bearing_1"): ("misalignment", "drive_end"),

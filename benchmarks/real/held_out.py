@@ -49,4 +49,3 @@ def unseen(bench: Bench, scene: hm.Scene, record: Record, step: float) -> Unseen
         simulated[column] = own[column] + moved
         left[column] = float(np.sqrt(np.nanmean((values - simulated[column]) ** 2)))
     return Unseen(measured=trial.columns, simulated=simulated, rms=left)
-

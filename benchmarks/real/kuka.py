@@ -20,7 +20,14 @@ from benchmarks.real.data import REAL
 from benchmarks.real.floor import Floor, basis_of, floor
 from benchmarks.real.held_out import measured
 from benchmarks.real.preparing import low_pass, rates
+from benchmarks.real.rounds import Round
 from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
+from hdrive_mbs.diagnosis.candidates import candidates
+from hdrive_mbs.diagnosis.diagnose import factors_of
+from hdrive_mbs.diagnosis.fit import fit
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.search import fit_nominal
+from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.records.measurement import Measurement
 from hdrive_mbs.records.record import Record
 
@@ -75,7 +82,9 @@ def scene() -> hm.Scene:
         name="KUKA KR300, axis 1",
         parts={
             "motor": hm.Motor(inertia=MOTOR_INERTIA, viscous=VISCOUS, characteristic=control),
-            "gear": hm.HarmonicDrive(ratio=RATIO, output_sense="same", stiffness=hm.CubicStiffness(linear=RIGID, cubic=0.0), damping=RIGID_DAMPING),
+            "gear": hm.HarmonicDrive(
+                ratio=RATIO, output_sense="same", stiffness=hm.CubicStiffness(linear=RIGID, cubic=0.0), damping=RIGID_DAMPING
+            ),
             "link": hm.Load(inertia=LINK_INERTIA, torque=hm.ConstantTorque(value=0.0)),
             "torque_reading": hm.Sensor(quantity="motor.torque"),
             "link_encoder": hm.Sensor(quantity="link.angle"),
@@ -115,7 +124,7 @@ def records(runs: Sequence[str] = SEEN) -> list[Record]:
     made = []
     for run in runs:
         values = columns()[run]
-        times = THIN * SAMPLE_TIME * np.arange(len(values["link_angle"]))
+        times = np.asarray(THIN * SAMPLE_TIME * np.arange(len(values["link_angle"])), dtype=np.float64)
         channels = {name: Measurement(name=name, unit=UNITS[name], values=item) for name, item in values.items()}
         made.append(Record(name=run, times=times, channels=channels))
     return made
@@ -150,3 +159,51 @@ def bench() -> Bench:
             "other_axes": Input(path="link.torque", law=lambda t, v: hm.TableTorque(times=t, torques=v)),
         },
     )
+
+
+def lateness() -> dict[str, dict[str, float]]:
+    """How late the link's encoder is against the motor's, of each axis and run: least squares of their difference over speed alone.
+
+    Gear elasticity would differ from axis to axis and follow the torque; a late sensor has one time for all axes.
+    """
+    found = {}
+    for run in (*SEEN, HELD_OUT):
+        name = f"2020-10-21 10s FF {run} 08ms"
+        file = loadmat(REAL / "kuka_kr300" / "data" / "recorded_trajectories" / name / "data.mat", squeeze_me=True, struct_as_record=False)
+        for axis in range(3):
+            motor, link = (
+                low_pass(np.radians(getattr(file["rec"], f"act_pos_{side}_deg")[axis]), SAMPLE_TIME, CORNER) for side in ("mot", "se")
+            )
+            difference = (motor - link) - (motor - link).mean()
+            speed, _ = rates(motor, SAMPLE_TIME)
+            late = float(difference @ speed / (speed @ speed))
+            found[f"axis {axis + 1}, run {run}"] = {
+                "late": late,
+                "difference": float(difference.std()),
+                "left": float((difference - late * speed).std()),
+            }
+    return found
+
+
+def compliance(last: Round) -> dict[str, float]:
+    """The compliance of the gear asked for directly, beside all that was accepted: value, interval [rad/(N m)], gain in log likelihood.
+
+    The authors' stiffness is 1/STIFFNESS; on the link's side the torque that accelerates it goes through the gear.
+    """
+    simulator = Simulator([trial for record in records() for trial in last.bench.trials(record)], STEP)
+    factors = factors_of(last.bench)
+    null = fit_nominal(simulator, factors)
+    (candidate,) = candidates(last.bench.scene, [hm.SeriesCompliance])
+    hypothesis = Hypothesis(factors, (candidate.starts[0],))
+    fitted = fit(simulator, hypothesis, hypothesis.start(null.z), steps=30)
+    last_factor = float(hypothesis.values(np.ones(hypothesis.size))[f"{candidate.starts[0].name}.compliance"])
+    curvature = fitted.curvature + np.diag(hypothesis.precisions)
+    spread = last_factor * float(np.sqrt(np.linalg.inv(curvature)[-1, -1]))
+    value = last_factor * float(fitted.z[-1])
+    return {
+        "value": value,
+        "low": max(value - 1.96 * spread, 0.0),
+        "high": value + 1.96 * spread,
+        "authors": 1.0 / STIFFNESS,
+        "gain": null.cost - fitted.cost,
+    }

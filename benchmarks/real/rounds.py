@@ -12,6 +12,7 @@ import importlib
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.bench import Bench, Uncertain
@@ -60,7 +61,7 @@ def rounds(bench: Bench, records: Sequence[Record], laws: Iterable[type[hm.Effec
 @contextmanager
 def _every_sample() -> Iterator[None]:
     """Let the search compare all samples: these records have a few hundred, thinned to what is independent already."""
-    method = importlib.import_module("hdrive_mbs.diagnosis.diagnose")
+    method: Any = importlib.import_module("hdrive_mbs.diagnosis.diagnose")
     before = method.EVERY
     method.EVERY = 1
     try:

@@ -21,10 +21,10 @@ import numpy as np
 import numpy.typing as npt
 
 import hdrive_mbs as hm
-from benchmarks.real.own_effects import CouplingFriction, JointFriction
 from benchmarks.real.data import REAL
 from benchmarks.real.floor import Floor, basis_of, floor
 from benchmarks.real.held_out import measured
+from benchmarks.real.own_effects import CouplingFriction, JointFriction
 from benchmarks.real.preparing import low_pass, rates
 from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
 from hdrive_mbs.records.measurement import Measurement
@@ -71,7 +71,8 @@ WRIST_LAWS: tuple[type[hm.Effect], ...] = (*LAWS, hm.ViscousDrag, hm.SeriesCompl
 """What is tried on axes 5 and 6 together."""
 PUBLISHED = {1: 7.231751, 2: 8.253, 3: 6.289599, 4: 2.515549, 5: 3.018672}
 COUPLED = {"coulomb": 2.108124, "coefficient": 0.60856}
-"""The authors' Coulomb friction of each joint [N m] and of the coupling of 5 and 6 (they find none of joint 6 itself), weighted least squares with all couplings of the rigid-body model."""
+"""The authors' Coulomb friction of each joint [N m], and friction of the coupling of 5 and 6 [N m, N m s/rad]; of joint 6 itself they
+find none.  Weighted least squares with all couplings of the rigid-body model."""
 
 
 @cache
@@ -79,7 +80,8 @@ def motion() -> tuple[FloatArray, FloatArray]:
     """Angles [rad] and torques [N m] of the joints, filtered and thinned, shape (6, n)."""
     folder = REAL / "staubli_tx40"
     angles, currents = (np.loadtxt(folder / f"{name}_data.csv", delimiter=",", skiprows=1).T for name in ("pos_read", "curr"))
-    joints, torques = np.linalg.solve(RATIOS, angles), RATIOS.T @ currents
+    joints = np.asarray(np.linalg.solve(RATIOS, angles), dtype=np.float64)
+    torques: FloatArray = RATIOS.T @ currents
 
     def ready(rows: FloatArray) -> FloatArray:
         return np.array([low_pass(row, SAMPLE_TIME, CORNER)[::THIN] for row in rows])

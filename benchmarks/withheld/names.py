@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 Label = tuple[str, str]
 """(family, place in our scene), or ("parameter", group of the bench)."""
@@ -23,10 +23,12 @@ class Names:
 
     causes : label -> name; what is missing here has no name and is answered "unknown"
     places : place or parameter group of our bench -> place of the answer format; a place that is missing keeps its name
+    elsewhere : label without a name -> its place, where that is another than the place in our bench says
     """
 
     causes: Mapping[Label, Name]
     places: Mapping[str, str]
+    elsewhere: Mapping[Label, str] = field(default_factory=dict)
 
     def name(self, label: Label) -> Name | None:
         """The name of a cause, None where it has none."""
@@ -39,7 +41,7 @@ class Names:
     def place_of(self, label: Label) -> str:
         """The place of a cause, with a name or without."""
         named = self.name(label)
-        return self.place(label[1]) if named is None else named[1]
+        return self.elsewhere.get(label, self.place(label[1])) if named is None else named[1]
 
     def labels(self, name: Name) -> tuple[Label, ...]:
         """All labels that are answered with a name."""

@@ -36,10 +36,10 @@ FloatArray = npt.NDArray[np.float64]
 WINDOW, DEGREE, EVERY = 31, 3, 10
 """Samples and degree of the local polynomial (Savitzky, Golay 1964), and samples from one that is used to the next: so far
 apart that their errors are nearly independent."""
-GAIN, SHARE = 10.0, 0.01
+GAIN, SHARE = 10.0, 0.005
 """Fall of the criterion from which a term counts ("very strong", Kass and Raftery 1995), and share of what the equation leaves
 that it has to explain as well: the equations themselves are only nearly true (on the four nulls of an open set the largest share
-was 0.004)."""
+was 0.0033)."""
 LOADED = 3.0
 """Output torque above which the twist is looked at [N m]: below, the gear is inside its lost motion."""
 SIZE_MOTOR, SIZE_LOAD = 1.0, 0.01

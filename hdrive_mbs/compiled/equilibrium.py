@@ -77,7 +77,7 @@ class _Settling:
         if np.any(left > ENOUGH * whole):
             first, slopes = self._accelerations(zero), self._slopes(zero)
             for held in DROPS:
-                dropped = np.linalg.solve(held * np.eye(n) - slopes, first[..., None])[..., 0]
+                dropped = np.asarray(np.linalg.solve(held * np.eye(n) - slopes, first[..., None])[..., 0], float)
                 place, over = self._newton(dropped)
                 better = over < left
                 best[better], left[better] = place[better], over[better]
@@ -90,7 +90,7 @@ class _Settling:
         q = q.copy()
         force = self._accelerations(q)
         left = self._sizes(force)
-        enough = ENOUGH * np.maximum(left, self._sizes(self._accelerations(0.0 * q)))
+        enough = ENOUGH * self._sizes(self._accelerations(0.0 * q))
         for _ in range(NEWTON):
             if np.all(left <= enough):
                 break

@@ -62,7 +62,9 @@ def machine(structure: Structure, width: int = 1, *, shared: bool = True) -> Mac
     module = llvm.parse_assembly("\n".join(dict.fromkeys(sources)))
     module.verify()
     target = llvm.Target.from_default_triple().create_target_machine(cpu=host.name, features=host.features, opt=2)
-    builder = llvm.create_pass_builder(target, llvm.create_pipeline_tuning_options(speed_level=0))  # straight lines of code: more costs, gains nothing
+    builder = llvm.create_pass_builder(
+        target, llvm.create_pipeline_tuning_options(speed_level=0)
+    )  # straight lines of code: more costs, gains nothing
     builder.getModulePassManager().run(module, builder)
     engine = llvm.create_mcjit_compiler(module, target)
     engine.finalize_object()

@@ -98,7 +98,8 @@ def candidates(scene: Scene, kinds: Iterable[type[Effect]] | None = None) -> lis
 def _middle(starts: tuple[Added, ...]) -> tuple[Added, ...]:
     """Starts whose searched shapes are in the middle of those that occur; every combination of the others."""
     kind = type(starts[0].effect)
-    shapes = [name for name, item in _quantities(kind).items() if item.typical is not None and name in _varied(starts)]
+    varied = _varied(starts)
+    shapes = [name for name, item in _quantities(kind).items() if item.typical is not None and item.low != 0.0 and name in varied]
     middle = {}
     for name in shapes:
         values = sorted({getattr(item.effect, name) for item in starts})

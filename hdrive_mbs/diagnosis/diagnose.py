@@ -16,12 +16,15 @@ from hdrive_mbs.diagnosis.assumed_bench import assumed_bench
 from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.diagnosis.candidate_checks import check_candidates, left_out
 from hdrive_mbs.diagnosis.candidates import candidates as all_candidates
+from hdrive_mbs.diagnosis.domain import domain_map
 from hdrive_mbs.diagnosis.estimates import effect_estimates, nominal_estimates
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.gap import gaps
 from hdrive_mbs.diagnosis.gather import Evidence, gather
 from hdrive_mbs.diagnosis.input_checks import check_records, check_trials
 from hdrive_mbs.diagnosis.journal import Journal
+from hdrive_mbs.diagnosis.locate import NOWHERE, Localiser
+from hdrive_mbs.diagnosis.pictured import pictured
 from hdrive_mbs.diagnosis.result import Cause, Diagnosis, Place
 from hdrive_mbs.diagnosis.search import Found, Label
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -129,10 +132,13 @@ def answer(
     improved = best.hypothesis.scene(bench.scene, best.z)
     notes: list[str] = []
     claimed = () if claim.kind in ("none", "unknown") or claim.fit is None else _causes(claim.fit, claim, improved, bench.groups)
-    where: tuple[Place, ...] = ()
     extras: dict[str, object] = {}
+    where, located = _located(evidence, notes)
     if pictures:
         extras["traces"] = traces(evidence.fine, evidence.nominal, evidence.null, best)
+        extras["domain"] = domain_map(evidence.fine, evidence.null, best)
+        if located is not None and where and where[0].at != NOWHERE:
+            extras["forces"] = tuple(pictured(force) for force in located.force(where[0].at))
     notes += _verified(evidence.fine, best)
     notes += [f"{best.hypothesis.label}: the fit had not converged when it stopped." for _ in range(not best.converged)]
     return Diagnosis(
@@ -151,6 +157,16 @@ def answer(
         versions=_versions(),
         **extras,  # type: ignore[arg-type]
     )
+
+
+def _located(evidence: Evidence, notes: list[str]) -> tuple[tuple[Place, ...], Localiser | None]:
+    """Places of the gap, most probable first; a note where they cannot be found."""
+    try:
+        localiser = Localiser(evidence.fine, evidence.null)
+        return localiser.places(), localiser
+    except HdriveError as error:
+        notes.append(f"The place of the gap was not looked for: {error}")
+        return (), None
 
 
 def _causes(found: Found, claim: Claim, improved: Scene, groups: Mapping[str, Sequence[str]]) -> tuple[Cause, ...]:

@@ -127,9 +127,9 @@ def fit(
 
     cost = cost_of(residuals, z)
     history = [cost]
-    damping, converged, done = 1.0, False, 0
+    damping, converged, done = 1.0, len(z) == 0, 0  # nothing to search: it is there
     curvature = np.zeros((len(z), len(z)))
-    for _ in range(steps):
+    for _ in range(0 if converged else steps):
         columns = jacobian(simulator, hypothesis, z, residuals)
         weights = simulator.blocks.weights(residuals[mask])
         systems = {}
@@ -192,7 +192,7 @@ def _proposals(
     def step(power: float, extra: float) -> FloatArray:
         curvature, slope = systems[power]
         matrix, scale = _scaled(curvature, precisions, extra)
-        return -_solved(matrix, slope / scale) / scale
+        return -solved(matrix, slope / scale) / scale
 
     points = []
     for power, parts in SHORTER:
@@ -203,8 +203,11 @@ def _proposals(
     return points
 
 
-def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+def solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
     """Least-norm solution; zero where the numbers are not finite."""
     if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
         return np.zeros_like(right)
-    return np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0])
+    try:
+        return np.asarray(np.linalg.lstsq(matrix, right, rcond=1e-14)[0])
+    except np.linalg.LinAlgError:
+        return np.zeros_like(right)

@@ -10,19 +10,35 @@ import numpy as np
 
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.search import FINE, HOPS, Depth, Found, Report, Search, Task, fit_nominal, run_task, scored, search
+from hdrive_mbs.diagnosis.search import (
+    FINE,
+    HOPS,
+    Depth,
+    Found,
+    Report,
+    Search,
+    Task,
+    fit_nominal,
+    joined,
+    run_task,
+    scored,
+    search,
+    swapped,
+)
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 
 LEFT = 1.1
 """Mean square left by the best single cause above which a second one is looked for."""
-SHALLOW = Depth(brief=(3, 4), laws=1, kept=(2, 3), serious=2)
+SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 """Of the search for a second cause."""
 SINGLES, LAST, LONG = 3, 4, 20
 """Labels that are fitted on all samples, and steps that this may take for them and for the best."""
 EXACT = 1e-6
 """Relative change of the cost that ends these last fits."""
+JOINED = 5
+"""Other single causes that the best one is joined with."""
 NEAR = 3.0
 """Mean square up to which the nominal model is fitted as sharply as the causes: its evidence is then what they are held against."""
 
@@ -74,11 +90,19 @@ def gather(
         again = partial(_second, said)
         pair = search(team, coarse, first.fitted, groups, tried, depth=SHALLOW, report=again)
     serious = single.labels[:SINGLES]
-    double = () if pair is None else pair.labels[:1]
-    tasks = [Task(null.hypothesis, np.zeros_like(null.z), None, 0, 1.0), Task(null.hypothesis, null.z, None, LONG, EXACT if null.chi_fit < NEAR else FINE, hops=HOPS)]
-    best = min((*serious, *double), key=lambda item: item.fitted.cost, default=None)
+    double: tuple[Found, ...] = ()
+    if pair is not None and first is not None:
+        both = joined(team, coarse, first, single.labels[1 : JOINED + 1])
+        together = (*pair.found, *both)
+        if together:
+            best = min(together, key=lambda item: item.fitted.cost)
+            other = swapped(team, coarse, best, first.suspect.label, single.labels[: SINGLES + 1])
+            double = (min((best, *other), key=lambda item: item.fitted.cost),)
+    share = EXACT if null.chi_fit < NEAR else FINE
+    tasks = [Task(null.hypothesis, np.zeros_like(null.z), None, 0, 1.0), Task(null.hypothesis, null.z, None, LONG, share, hops=HOPS)]
+    leader = min((*serious, *double), key=lambda item: item.fitted.cost, default=None)
     for item in (*serious, *double):
-        far = item is best or null.chi_fit < NEAR
+        far = item is leader or null.chi_fit < NEAR
         tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, LONG if far else LAST, EXACT, hops=HOPS if far else 0))
     fits = team.map(run_task, fine, tasks, partial(said, "all samples"))
     pairs = list(zip((*serious, *double), fits[2:], strict=True))

@@ -11,7 +11,7 @@ import dataclasses
 
 import numpy as np
 
-from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian
+from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian, solved
 from hdrive_mbs.diagnosis.simulator import Simulator
 
 PARTS = (1.0, 0.4)
@@ -25,7 +25,7 @@ WORTH = 1.0
 def settled(simulator: Simulator, fitted: Fitted, hops: int = 3) -> Fitted:
     """The fit, or a better one that lies within some hops."""
     best = fitted
-    for _ in range(hops):
+    for _ in range(hops if len(fitted.z) else 0):
         proposed = _bowl(simulator, best)
         tried = [best]
         for part in PARTS:
@@ -59,6 +59,6 @@ def _bowl(simulator: Simulator, fitted: Fitted) -> np.ndarray[tuple[int], np.dty
         normal = curvature + np.diag(hypothesis.precisions)
         scale = np.sqrt(np.maximum(np.diag(normal), 1e-300))
         slope = weighted.T @ part + hypothesis.precisions * z
-        move = -np.linalg.lstsq(normal / np.outer(scale, scale), slope / scale, rcond=1e-13)[0] / scale
+        move = -solved(normal / np.outer(scale, scale), slope / scale) / scale
     reaches = hypothesis.reaches(z)
     return np.asarray(np.clip(move, -reaches, reaches))

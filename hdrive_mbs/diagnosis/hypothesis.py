@@ -185,7 +185,7 @@ class Hypothesis:
     def reaches(self, z: FloatArray) -> FloatArray:
         """Longest changes in one step of a fit, by coordinate."""
         pairs = zip(self.unknowns, self.slices, strict=True)
-        return np.concatenate([np.full(unknown.size, unknown.reach(z[part].tolist())) for unknown, part in pairs])
+        return np.concatenate([np.zeros(0), *(np.full(unknown.size, unknown.reach(z[part].tolist())) for unknown, part in pairs)])
 
     def rescaled(self, z: FloatArray) -> tuple[Hypothesis, FloatArray]:
         """The same hypothesis with strengths measured in their present values, and the coordinates of the same point."""
@@ -203,9 +203,9 @@ class Hypothesis:
     def curvatures(self, z: FloatArray) -> FloatArray:
         """Of the priors, by coordinate."""
         pairs = zip(self.unknowns, self.slices, strict=True)
-        return np.concatenate([np.full(unknown.size, unknown.curvature(z[part].tolist())) for unknown, part in pairs])
+        return np.concatenate([np.zeros(0), *(np.full(unknown.size, unknown.curvature(z[part].tolist())) for unknown, part in pairs)])
 
     def steps(self, z: FloatArray) -> FloatArray:
         """Differences for numerical derivatives, by coordinate."""
         pairs = zip(self.unknowns, self.slices, strict=True)
-        return np.concatenate([np.full(unknown.size, unknown.step(z[part].tolist())) for unknown, part in pairs])
+        return np.concatenate([np.zeros(0), *(np.full(unknown.size, unknown.step(z[part].tolist())) for unknown, part in pairs)])

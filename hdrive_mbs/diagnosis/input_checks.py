@@ -90,8 +90,8 @@ def _check_input(bench: Bench, record: Record, name: str) -> None:
     given = record.channels[name].unit
     if unit and given != unit:
         raise UnitError(
-            f"Record {record.name!r}: column {name!r} is in {given if given != '1' else 'no unit (1)'}, but {item.path}, which it drives, is in"
-            f" {unit}. Correct the unit when reading: units={{{name!r}: ...}}, or take another column."
+            f"Record {record.name!r}: column {name!r} is in {given if given != '1' else 'no unit (1)'}, but {item.path}, which it drives,"
+            f" is in {unit}. Correct the unit when reading: units={{{name!r}: ...}}, or take another column."
         )
 
 

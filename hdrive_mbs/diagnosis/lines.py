@@ -57,7 +57,7 @@ class Lines:
         # the scene that most trials of a family have comes first: its network serves all of its views
         for family in self._families:
             scenes = [self._trials[k].scene for k in family]
-            family.sort(key=lambda k: -sum(scene is self._trials[k].scene for scene in scenes))  # noqa: B023
+            family.sort(key=lambda k: -sum(scene is self._trials[k].scene for scene in scenes))
         self._inputs: dict[int, list[str]] = {}
         for family in self._families:
             first = self._trials[family[0]].scene
@@ -100,9 +100,7 @@ class Lines:
             if trial.settled and resting is None:
                 resting = _resting(lines)
             rest = resting if trial.settled and resting is not None else [{} for _ in lines]
-            found[k] = [
-                None if line is None else Start(line, {**angles, **trial.angles}) for line, angles in zip(lines, rest, strict=True)
-            ]
+            found[k] = [None if line is None else Start(line, {**angles, **trial.angles}) for line, angles in zip(lines, rest, strict=True)]
         return found
 
     def _taking(self, k: int, base: CompiledLine | None, hypothesis: Hypothesis, point: FloatArray) -> CompiledLine | None:
@@ -152,9 +150,8 @@ def _network(hypothesis: Hypothesis, scene: Scene, point: FloatArray) -> Network
 
 def _alike(a: Scene, b: Scene) -> bool:
     """Whether scenes may differ in the numbers of some parts alone."""
-    return (
-        a is b
-        or a.connections == b.connections
+    return a is b or (
+        a.connections == b.connections
         and a.effects == b.effects
         and {name: type(part) for name, part in a.parts.items()} == {name: type(part) for name, part in b.parts.items()}
     )
@@ -179,7 +176,6 @@ def _differing(a: Described, b: Described, path: str) -> list[str]:
 def _meet(path: str, other: str) -> bool:
     """Whether one path holds the other."""
     return path == other or path.startswith(f"{other}.") or other.startswith(f"{path}.")
-
 
 
 def _same(a: Program, b: Program) -> bool:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.fit import Fitted, solved
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis, start_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 
@@ -143,7 +143,7 @@ def bounded_step(normal: FloatArray, slope: FloatArray, hypothesis: Hypothesis, 
         scale = np.sqrt(np.maximum(np.diag(system), 1e-300))
         scaled = system / np.outer(scale, scale) + 1e-9 * np.eye(len(at))
         move = np.zeros(len(start))
-        move[at] = -np.linalg.solve(scaled, slope[at] / scale) / scale
+        move[at] = -solved(scaled, slope[at] / scale) / scale
         limited = np.array([k >= hypothesis.nominal_size and move[k] < 0.0 for k in range(len(start))])
         wrong = limited & free & (hypothesis.clipped(start + move) > start + move) & (hypothesis.precisions == 0.0)
         if not wrong.any():

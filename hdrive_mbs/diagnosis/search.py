@@ -42,7 +42,7 @@ class Depth:
     """How far a search goes.
 
     brief : labels that are looked at closer, at least and at most;  laws : of each that get joint steps (1: no closer look)
-    kept : laws that are fitted on, at least and at most;  serious : how many of them to the end
+    kept : laws that are fitted on, at least and at most;  serious : how many of them to the end, besides all laws of the best label
     """
 
     brief: tuple[int, int] = (4, 10)
@@ -169,7 +169,9 @@ def search(
     brief = [Found(suspect, fitted) for (suspect, _), fitted in zip(picked, fits, strict=True)]
     brief.sort(key=lambda item: item.fitted.cost)
     kept = brief[: _worth(base.cost, [item.fitted.cost for item in brief], how.kept)]
-    tasks = [further(item.fitted, *((CONVERGED, FINE, 1) if k < how.serious else (STEPS,))) for k, item in enumerate(kept)]
+    leading = kept[0].suspect.label if kept else None
+    thorough = [k < how.serious or item.suspect.label == leading for k, item in enumerate(kept)]
+    tasks = [further(item.fitted, *((CONVERGED, FINE, 1) if to_end else (STEPS,))) for item, to_end in zip(kept, thorough, strict=True)]
     fits = team.map(run_task, simulator, tasks, partial(said, "fitting the best"))
     found = [Found(item.suspect, fitted) for item, fitted in zip(kept, fits, strict=True)]
     if how.laws > 1:
@@ -245,6 +247,46 @@ def run_task(simulator: Simulator, task: Task) -> Fitted:
 def further(fitted: Fitted, steps: int = CONVERGED, share: float = FINE, hops: int = 0) -> Task:
     """To fit on from where a fit stands."""
     return Task(fitted.hypothesis, fitted.z, fitted.residuals, steps, share, fitted if fitted.converged else None, hops)
+
+
+def joined(team: Team, simulator: Simulator, first: Found, others: Sequence[Found]) -> list[Found]:
+    """The best single cause together with each of the others, both from the values that they were found with alone."""
+    own, _ = first.fitted.hypothesis.rescaled(first.fitted.z)
+    tasks = []
+    suspects_of = []
+    for item in others:
+        theirs, _ = item.fitted.hypothesis.rescaled(item.fitted.z)
+        if item.suspect.label == first.suspect.label or not (own.added or own.loose):
+            continue
+        base = Hypothesis(own.factors, own.added, {**own.loose, **theirs.loose})
+        hypothesis = Hypothesis(own.factors, (*own.added, *(_renamed(added, base) for added in theirs.added)), base.loose)
+        start = hypothesis.start(first.fitted.hypothesis.nominal_part(first.fitted.z))
+        tasks.append(Task(hypothesis, start, None, ELSEWHERE, FINE))
+        suspects_of.append(item.suspect)
+    return [Found(suspect, fitted) for suspect, fitted in zip(suspects_of, team.map(run_task, simulator, tasks), strict=True)]
+
+
+def swapped(team: Team, simulator: Simulator, pair: Found, first: Label, others: Sequence[Found]) -> list[Found]:
+    """A pair with its first cause replaced by each of other single causes, the second as it was found.
+
+    The first cause was chosen while the second was missing, and may have had to stand for it.
+
+    first : label of the first cause;  others : single causes, fitted
+    """
+    second = pair.fitted.hypothesis.rescaled(pair.fitted.z)[0]
+    if len(second.added) < 2:
+        return []
+    tasks = []
+    names = []
+    for item in others:
+        if item.suspect.label in (first, pair.suspect.label) or not item.fitted.hypothesis.added:
+            continue
+        own = item.fitted.hypothesis.rescaled(item.fitted.z)[0]
+        base = Hypothesis(own.factors, own.added, {**own.loose, **second.loose})
+        hypothesis = Hypothesis(own.factors, (*own.added, _renamed(second.added[-1], base)), base.loose)
+        tasks.append(Task(hypothesis, hypothesis.start(pair.fitted.hypothesis.nominal_part(pair.fitted.z)), None, ELSEWHERE, FINE))
+        names.append(pair.suspect)
+    return [Found(suspect, fitted) for suspect, fitted in zip(names, team.map(run_task, simulator, tasks), strict=True)]
 
 
 def scored(found: Found, base: Fitted) -> Found:

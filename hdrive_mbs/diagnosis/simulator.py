@@ -134,8 +134,8 @@ class Simulator:
         """Values of the columns of a trial at its samples, by point; equal lines are run once."""
         kept = self._kept[number]
         keys = [None if start is None else start.key for start in starts]
-        new = {key: start for key, start in zip(keys, starts, strict=True) if key not in kept and start is not None}
-        found = dict(zip(new, self._run(self.trials[number], list(new.values())), strict=True))
+        new: dict[object, Start] = {key: start for key, start in zip(keys, starts, strict=True) if key not in kept and start is not None}
+        found: dict[object, Values | None] = dict(zip(new, self._run(self.trials[number], list(new.values())), strict=True))
         for key in keys:
             if key in kept:
                 kept.move_to_end(key)

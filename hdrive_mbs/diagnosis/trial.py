@@ -58,4 +58,4 @@ class Trial:
     @property
     def times(self) -> FloatArray:
         """Times of the samples [s]."""
-        return self.every * np.arange(self.samples)
+        return np.asarray(self.every * np.arange(self.samples), float)

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 
 from hdrive_mbs.diagnosis.search import Found, Label
 
-ODDS = 8.0
-"""Log odds below which an effect is not claimed."""
+ODDS, PARAMETER_ODDS = 8.0, 4.5
+"""Log odds below which an effect, and a parameter out of its tolerance, is not claimed.  There are many laws, which
+nibble at what every model leaves, and few parameters."""
 CLEAN = 1.15
 """Mean square of the refitted nominal model up to which its misfit counts as noise."""
 EXPLAINED = 0.6
@@ -54,7 +55,7 @@ def judge(null_misfit: float, found: Sequence[Found], pair: Found | None) -> Cla
     null_misfit : mean square of the refitted nominal model on samples that no fit saw
     found : single causes on all samples, best first;  pair : the best pair, its log odds those over the nominal model
     """
-    singles = [item for item in found if item.log_odds > ODDS]
+    singles = [item for item in found if item.log_odds > (PARAMETER_ODDS if item.suspect.label[0] == "parameter" else ODDS)]
     best = singles[0] if singles else None
     if best is None:
         kind = "none" if null_misfit <= CLEAN else "unknown"
@@ -65,7 +66,8 @@ def judge(null_misfit: float, found: Sequence[Found], pair: Found | None) -> Cla
     probabilities = _probabilities(found, null_misfit, "effect")
     if not explains(null_misfit, chosen.fitted.chi_held):
         return Claim("unknown", chosen, (), probabilities)
-    tied = tuple(item.suspect.label for item in singles if chosen is best and best.log_odds - item.log_odds < TIED)
+    close = [item.suspect.label for item in singles if chosen is best and item is not best and best.log_odds - item.log_odds < TIED]
+    tied = tuple(dict.fromkeys(label for label in close if label != best.suspect.label))
     return Claim(kind_of(chosen), chosen, tied, probabilities)
 
 

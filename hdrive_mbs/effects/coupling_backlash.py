@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -30,6 +30,7 @@ class CouplingBacklash(LawEffect):
     backlash: float = parameter("rad", "full width b of the gap", low=0.0, high=0.2, typical=(1e-5, 0.05))
 
     family: ClassVar[str] = "backlash"
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"backlash": (1e-4, 7e-4, 4e-3)}
     signature: ClassVar[str] = "no torque over a range of twist; knocking at load reversals, a lower resonance at small amplitude"
 
     def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:

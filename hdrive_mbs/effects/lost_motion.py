@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -33,6 +33,7 @@ class LostMotion(LawEffect):
     )
 
     family: ClassVar[str] = "backlash"
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"width": (5e-5, 3e-4, 1.5e-3)}
     signature: ClassVar[str] = "no elastic torque over a range of twist; offset between both senses, a soft resonance at small torque"
 
     def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:

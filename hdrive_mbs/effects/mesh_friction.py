@@ -37,9 +37,7 @@ class MeshFriction(Effect):
     loss_factor: float = parameter(
         "1", "mu, friction torque over ideal torque of the wave generator", low=0.0, high=2.0, typical=(0.01, 0.6)
     )
-    no_load: float = parameter(
-        "N m", "T_0, friction torque on the wave generator without load", default=0.0, low=0.0, high=1e2, typical=(1e-4, 1.0)
-    )
+    no_load: float = parameter("N m", "T_0, friction torque on the wave generator without load", default=0.0, low=0.0, high=1e2)
     smoothing_speed: float = parameter("rad/s", "speed w_0 of the smooth step through zero", default=0.5, above=0.0, typical=(0.05, 5.0))
 
     acts_on: ClassVar[str] = "gear"

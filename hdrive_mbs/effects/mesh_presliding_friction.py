@@ -37,9 +37,7 @@ class MeshPreslidingFriction(Effect):
     loss_factor: float = parameter(
         "1", "mu, friction torque over ideal torque of the wave generator", low=0.0, high=2.0, typical=(0.01, 0.6)
     )
-    no_load: float = parameter(
-        "N m", "T_0, friction torque on the wave generator without load", default=0.0, low=0.0, high=1e2, typical=(1e-4, 1.0)
-    )
+    no_load: float = parameter("N m", "T_0, friction torque on the wave generator without load", default=0.0, low=0.0, high=1e2)
     rounding_torque: float = parameter("N m", "T_r, torque above which the mesh rubs", default=0.0, low=0.0, high=1e3, typical=(0.05, 20.0))
     drop: float = parameter("1", "d, share by which friction is larger at low speed", default=0.0, low=0.0, high=10.0, typical=(0.02, 2.0))
     drop_speed: float = parameter("rad/s", "w_S, speed at which that has fallen to 1/e", default=10.0, above=0.0, typical=(1.0, 100.0))

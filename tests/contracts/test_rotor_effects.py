@@ -51,6 +51,7 @@ EXAMPLES = {
         Example(hm.ProbeGain(error=0.1, curvature=100.0), "probe", ("error", "curvature")),
         Example(hm.ProbeCrossTalk(share=0.1), "probe", ("share",)),
         Example(hm.BearingClearance(gap=1e-4), "left", ("gap",)),
+        Example(hm.DampedClearance(gap=1e-4, film_damping=1.0), "left", ("gap",)),
         Example(hm.HertzianClearance(gap=1e-4, exponent=1.0, reference_force=20.0), "left", ("gap",)),
         Example(hm.BearingCubicStiffness(stiffness=1e13), "right", ("stiffness",)),
         Example(hm.BearingHardening(rate=1e4), "left", ("rate",)),
@@ -66,6 +67,7 @@ EXAMPLES = {
         Example(hm.HiddenModeSupport(mass=0.5, natural_frequency=300.0, ratio=1.3, angle=0.4), "left", ("mass",)),
         Example(hm.BreathingCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, steepness=2.0), "first", ("compliance",)),
         Example(hm.MomentCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, closing_moment=3.0), "first", ("compliance",)),
+        Example(hm.PhasedCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, phase=0.7), "first", ("compliance",)),
         Example(hm.InternalDamping(time=1e-3), "first", ("time",)),
         Example(hm.ShaftStiffnessAsymmetry(asymmetry=0.2, angle=0.4), "first", ("asymmetry",)),
         Example(

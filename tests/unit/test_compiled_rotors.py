@@ -73,7 +73,8 @@ def whirling(network: Network, tilt: float, count: int = 6, *, seed: int = 1) ->
     speeds = {
         name: 500.0 * (size[name] * rng.normal(size=count) if name in lateral else 1.0 + 0.01 * rng.normal(size=count)) for name in size
     }
-    return network.moment(np.linspace(0.5, 1.0, count), angles, speeds, {})
+    states = {state.name: rng.normal(size=count) for state in network.states}
+    return network.moment(np.linspace(0.5, 1.0, count), angles, speeds, states)
 
 
 def differences(network: Network, tilt: float) -> dict[str, float]:

@@ -13,11 +13,13 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
-from hdrive_mbs.diagnosis.diagnose import diagnose
+from hdrive_mbs.diagnosis.diagnose import diagnose, factors_of
+from hdrive_mbs.diagnosis.input_checks import check_trials
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.result import Diagnosis
+from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.effects.bearing_cubic_stiffness import BearingCubicStiffness
-from hdrive_mbs.effects.effect import Effect, MemoryTorqueEffect, TorqueEffect
+from hdrive_mbs.effects.effect import Effect, MemoryTorqueEffect, TorqueEffect, add_body_torque
 from hdrive_mbs.effects.kinematic_error import KinematicError
 from hdrive_mbs.effects.torque_ripple import TorqueRipple
 from hdrive_mbs.expression import Value
@@ -167,15 +169,18 @@ def test_a_record_that_starts_at_another_speed_is_refused() -> None:
     refused(hm.RecordError, "'staircase' does not start like the scene", "'motor_angle' begins at", "rad/s", "Bench(speeds=", given=(part,))
 
 
-def test_the_way_out_for_a_record_that_starts_at_speed_works() -> None:
-    """From 0.3 s to 0.4 s the reference stands at 60 rad/s; the controller's integral is what the scene cannot be told."""
-    part = quiet()[1].between(0.55, DURATION)
-    speeds = {"motor": 40.0, "load": 0.8}
-    known = dataclasses.replace(bench(), speeds=speeds)
-    try:
-        run(known, (part,))
-    except hm.RecordError as error:
-        assert "does not start like the scene" not in str(error)
+def test_a_record_that_starts_at_speed_is_taken_with_its_start_and_one_from_rest_as_it_is() -> None:
+    """At 0.55 s the reference of the load cycle has stood at 40 rad/s for a while."""
+    [part] = (quiet()[1].between(0.55, DURATION).selecting("motor_angle", "speed_reference", "load_torque"),)
+    for speeds, fits in (({}, False), ({"motor": 40.0, "load": 0.8}, True)):
+        known = dataclasses.replace(bench(("motor_angle",)), speeds=speeds)
+        simulator, factors = Simulator(known.trials(part), 1e-3), factors_of(known)
+        if fits:
+            check_trials(simulator, factors)
+        else:
+            with pytest.raises(hm.RecordError, match=r"'motor_angle' begins at (39|40)\."):
+                check_trials(simulator, factors)
+    check_trials(Simulator(bench().trials(quiet()[1].between(0.02, DURATION)), 1e-3), factors_of(bench()))
 
 
 # -- the bench itself ------------------------------------------------------------------------------------
@@ -258,7 +263,7 @@ class _Own(TorqueEffect):
 
 class PlacesRaise(_Own):
     @classmethod
-    def places(cls, network: Network) -> tuple[str, ...]:
+    def places(cls, network: Network) -> tuple[str, ...]:  # noqa: ARG003
         raise ZeroDivisionError("no bodies")
 
 
@@ -322,7 +327,12 @@ def test_an_effect_of_a_users_own_that_works_takes_part_without_registration() -
 
 def test_where_all_candidates_fail_the_answer_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """A law of the library that overflows with its start values: the search goes on without it."""
-    monkeypatch.setattr(TorqueRipple, "delivered", lambda self, time, speed, torque: np.exp(1e6 * (1.0 + time)) * torque)
+
+    def overflowing(self: TorqueRipple, draft: Draft, place: str, name: str) -> None:
+        body = draft.body(place, "TorqueRipple").name
+        add_body_torque(self, draft, body, name, lambda moment: np.exp(1e6 * (1.0 + moment.time)) * moment.speed(body))
+
+    monkeypatch.setattr(TorqueRipple, "apply", overflowing)
     found = run(kinds=(TorqueRipple,))
     assert found.verdict == "none"
     assert any("None of the 1 candidates could be run" in note and "torque_ripple at motor" in note for note in found.notes)

@@ -30,7 +30,6 @@ from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.records.measurement import Measurement
 from hdrive_mbs.records.record import Record
-
 from tests.unit import rotor_scenes
 
 EVERY, STEP, SECONDS = 1e-3, 5e-4, 1.0
@@ -361,17 +360,15 @@ def rotor_bench() -> Bench:
 def test_a_hammer_at_standstill_says_nothing_of_unbalance_and_turning_does() -> None:
     known = rotor_bench()
     mass = Factor(path="disc.mass", name="mass", nominal={"disc.mass": 2.0}, sigma=0.01)
-    fits = {
-        ("none", ""): as_given(Hypothesis((mass,))),
-        ("unbalance", "disc"): as_given(Hypothesis((mass,), (Added(hm.AddedUnbalance(amount=1e-5), "disc", "unbalance"),))),
-    }
+    unbalanced = as_given(Hypothesis((mass,), (Added(hm.RotorUnbalance(unbalance=1e-5), "disc", "unbalance"),)))
+    balanced = as_given(Hypothesis((mass,)))
     critical = rotor_scenes.CRITICAL
     menu = rotor_menu("speed", top=500.0, seconds=0.6, every=5e-4, critical=(critical, 1200.0), hammers={"force": "disc"}, blow=200.0)
     assert [item.name for item in menu] == ["slow run-up", f"dwell at half of {critical:.4g} rad/s", "coast-down", "hammer at disc"]
     assert max(float(np.abs(item.sampled("speed")).max()) for item in menu) == pytest.approx(500.0, rel=1e-3)
     assert float(menu[1].sampled("speed")[-1]) == pytest.approx(critical / 2.0)
     assert float(menu[3].sampled("force").max()) == pytest.approx(200.0, rel=0.05)
-    found = {item.record: item.detectability for item in next_records(known, fits, menu)}
+    found = {item.name: detectability(known.planned(item), unbalanced, balanced, step=2.5e-4) for item in menu}
     assert found["hammer at disc"] < 1e-6
     assert min(found["slow run-up"], found["coast-down"]) > DISTINGUISHABLE
     with pytest.raises(ParameterError, match="four samples"):

@@ -10,7 +10,8 @@ If the first model is right, the logarithm of the odds against the second rises 
 deviations) is not distinguishable.
 
 Source: T-optimal design, Atkinson, Fedorov, Biometrika 62 (1975) 57, with priors.  Leaves out that the first model is
-not known exactly, and a second least far away.
+not known exactly, and a second least far away.  A model that holds the other one as a special case (no friction) can always
+follow it in a new record that speaks alone; then only the old records, which the special case did not fit, tell them apart.
 """
 
 from __future__ import annotations

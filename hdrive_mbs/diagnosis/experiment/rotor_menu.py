@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from hdrive_mbs.diagnosis.experiment.plan import Course, Plan
+from hdrive_mbs.diagnosis.experiment.plan import Course, FloatArray, Plan
 from hdrive_mbs.errors import ParameterError
 
 RISE, DWELL = 0.3, 0.3
@@ -46,7 +46,7 @@ def rotor_menu(
         )
 
     def turning(name: str, shares: Sequence[float], speeds: Sequence[float]) -> Plan:
-        course: Course = (seconds * np.asarray(shares, float), np.asarray(speeds, float))
+        course: Course = ([seconds * share for share in shares], speeds)
         return Plan(name=name, inputs={speed: course}, duration=seconds, every=every)
 
     plans = [turning("slow run-up", (0.0, 0.02, 0.98), (0.0, 0.0, top))]
@@ -54,7 +54,7 @@ def rotor_menu(
         if 0.0 < value <= 2.0 * top:
             plans.append(turning(f"dwell at half of {value:.4g} rad/s", (0.0, DWELL), (0.0, 0.5 * value)))
     plans.append(turning("coast-down", (0.0, RISE, RISE + 0.05, 1.0), (0.0, top, top, 0.0)))
-    times = every * np.arange(round(seconds / every))
+    times: FloatArray = np.asarray(every * np.arange(round(seconds / every)), float)
     for column, place in (hammers or {}).items():
         since = (times - 0.02 * seconds) % (seconds / BLOWS)
         force = np.where((times >= 0.02 * seconds) & (since < blow_time), blow * np.sin(np.pi * since / blow_time), 0.0)

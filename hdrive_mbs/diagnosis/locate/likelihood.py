@@ -108,7 +108,7 @@ class Likelihood:
         self._real = []
         for item in given:
             flat = item.values.reshape(-1, item.values.shape[-1])
-            self._real.append((flat.real.astype(np.float32), flat.imag.astype(np.float32)))  # enough for sums over thousands
+            self._real.append((flat.real.copy(), flat.imag.copy()))
 
     @property
     def numbers(self) -> int:
@@ -195,7 +195,7 @@ class Likelihood:
         total = np.zeros((size, size))
         for item, (real, imaginary), fit, own in zip(self.given, self._real, fits, seen, strict=True):
             weight = np.sqrt(np.repeat(1.0 / fit.scale, item.widths, axis=1))
-            each = np.repeat(weight.ravel(), item.values.shape[2]).astype(np.float32)[:, None]
+            each = np.repeat(weight.ravel(), item.values.shape[2])[:, None]
             for part in (real, imaginary):
                 weighted = part * each
                 total += weighted.T @ weighted

@@ -46,6 +46,7 @@ def response(motion: Motion, spectra: Spectra) -> Response:
     along = {key: values[at] for key, values in motion.values.items()}
     linear = linearised(wide, channels, [state for _, state in names], trial.times[at], along)
     spans = [np.flatnonzero((at >= first) & (at < first + spectra.window)) for first in spectra.starts]
+    spans = [span if len(span) else np.array([len(at) - 1]) for span in spans]  # the last window may begin after the last moment
     rates = np.maximum(spectra.frequencies, SLOWEST * spectra.frequencies[1])
     transfer = transfers(linear.mean(spans), 1j * rates) * spectra.whitening[..., None]
     found = {source.at: transfer[..., [k for k, (place, _) in enumerate(names) if place == source.at]] for source in given}
