@@ -34,7 +34,7 @@ class Uncertain:
     sigma: float
 
     def __post_init__(self) -> None:
-        if isinstance(self.paths, str) or not self.paths:
+        if isinstance(self.paths, str) or not self.paths:  # type: ignore[unreachable]
             raise ParameterError(f"paths = {self.paths!r}: give the paths of the fields as a tuple, like ('motor.inertia',).")
         if not (self.sigma > 0.0 and math.isfinite(self.sigma)):
             raise ParameterError(f"{self.paths[0]}: sigma = {self.sigma:g} must be greater than 0; leave out what is known exactly.")

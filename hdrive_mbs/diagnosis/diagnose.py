@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import platform
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -18,6 +19,7 @@ from hdrive_mbs.diagnosis.candidate_checks import check_candidates, left_out
 from hdrive_mbs.diagnosis.candidates import candidates as all_candidates
 from hdrive_mbs.diagnosis.domain import domain_map
 from hdrive_mbs.diagnosis.estimates import effect_estimates, nominal_estimates
+from hdrive_mbs.diagnosis.experiment.choose import next_records
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.gap import gaps
 from hdrive_mbs.diagnosis.gather import Evidence, gather
@@ -25,13 +27,12 @@ from hdrive_mbs.diagnosis.input_checks import check_records, check_trials
 from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.locate import NOWHERE, Localiser
 from hdrive_mbs.diagnosis.pictured import pictured
-from hdrive_mbs.diagnosis.result import Cause, Diagnosis, Place
+from hdrive_mbs.diagnosis.result import Cause, Diagnosis, Place, Separation
 from hdrive_mbs.diagnosis.search import Found, Label
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.traces import traces
-from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import NONE, UNKNOWN, Claim, judge
 from hdrive_mbs.diagnosis.verify import engine_difference
@@ -95,11 +96,11 @@ def diagnose(
     if folder is not None:
         inputs = {"records": chosen, "bench": known, "candidates": tried, "trials": (trials, factors, known.groups, step, EVERY)}
         journal = Journal(folder, inputs)
-    with Team(workers or 1, journal) as team:
+    with Team(workers or min(2, os.cpu_count() or 1), journal) as team:
         evidence = gather(coarse, fine, factors, known.groups, tried, team, report)
     if watch is not None:
         watch(evidence)
-    found = answer(known, trials, evidence, started=started, pictures=pictures, records=tuple(record.name for record in chosen))
+    found = answer(known, chosen, evidence, started=started, pictures=pictures)
     notes = (*left_out(tried, evidence.single), *(() if journal is None else journal.said))
     return dataclasses.replace(found, notes=(*found.notes, *notes))
 
@@ -122,9 +123,7 @@ def factors_of(bench: Bench) -> tuple[Factor, ...]:
     return tuple(found)
 
 
-def answer(
-    bench: Bench, trials: Sequence[Trial], evidence: Evidence, *, started: float, pictures: bool, records: tuple[str, ...]
-) -> Diagnosis:
+def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, started: float, pictures: bool) -> Diagnosis:
     """The answer that the fits of a case give."""
     pair = evidence.pairs[0] if evidence.pairs else None
     claim = judge(evidence.null.chi_held, evidence.singles, pair)
@@ -139,12 +138,14 @@ def answer(
         extras["domain"] = domain_map(evidence.fine, evidence.null, best)
         if located is not None and where and where[0].at != NOWHERE:
             extras["forces"] = tuple(pictured(force) for force in located.force(where[0].at))
+    if claim.tied:
+        extras["next_records"] = _next_records(bench, records, evidence, claim, notes)
     notes += _verified(evidence.fine, best)
     notes += [f"{best.hypothesis.label}: the fit had not converged when it stopped." for _ in range(not best.converged)]
     return Diagnosis(
         scene=bench.scene,
         improved=improved,
-        records=records,
+        records=tuple(record.name for record in records),
         verdict=claim.kind,
         causes=claimed,
         indistinguishable=claim.tied,
@@ -169,10 +170,23 @@ def _located(evidence: Evidence, notes: list[str]) -> tuple[tuple[Place, ...], L
         return (), None
 
 
+def _next_records(bench: Bench, records: Sequence[Record], evidence: Evidence, claim: Claim, notes: list[str]) -> tuple[Separation, ...]:
+    """Records that would separate what these cannot tell apart; a note where none can be planned."""
+    assert claim.fit is not None
+    labels = {claim.fit.suspect.label, *claim.tied}
+    tied = {item.suspect.label: item.fitted for item in evidence.singles if item.suspect.label in labels}
+    if len(tied) < 2:
+        return ()
+    try:
+        return next_records(bench, tied, records=records, step=evidence.fine.step)
+    except HdriveError as error:
+        notes.append(f"No next record was planned: {error}")
+        return ()
+
+
 def _causes(found: Found, claim: Claim, improved: Scene, groups: Mapping[str, Sequence[str]]) -> tuple[Cause, ...]:
     """What is claimed: every loosened group and every added effect of the chosen hypothesis."""
     fitted = found.fitted
-    common = {"log_odds": found.log_odds, "fit": fitted.chi_fit, "held_out": fitted.chi_held}
     causes = []
     for item in fitted.hypothesis.added:
         kind = type(item.effect)
@@ -185,7 +199,9 @@ def _causes(found: Found, claim: Claim, improved: Scene, groups: Mapping[str, Se
                 signature=kind.signature,
                 probability=claim.probabilities.get(item.label, claim.probabilities.get(found.suspect.label, 0.0)),
                 parameters=effect_estimates(fitted, improved, item.name),
-                **common,
+                log_odds=found.log_odds,
+                fit=fitted.chi_fit,
+                held_out=fitted.chi_held,
             )
         )
     for group, names in groups.items():
@@ -201,7 +217,9 @@ def _causes(found: Found, claim: Claim, improved: Scene, groups: Mapping[str, Se
                 law="parameter",
                 probability=claim.probabilities.get(label, claim.probabilities.get(found.suspect.label, 0.0)),
                 parameters=estimates,
-                **common,
+                log_odds=found.log_odds,
+                fit=fitted.chi_fit,
+                held_out=fitted.chi_held,
             )
         )
     return tuple(causes)
@@ -266,5 +284,3 @@ def _versions() -> Mapping[str, str]:
         except metadata.PackageNotFoundError:
             found[name] = "not installed"
     return found
-
-

@@ -55,7 +55,7 @@ def effect_estimates(fitted: Fitted, improved: Scene, name: str) -> tuple[Estima
         slopes = _slopes(unknown, z.tolist())
         for path, value in unknown.values(z.tolist()).items():
             slope = slopes[path]
-            error = float(np.sqrt(max(slope @ spread @ slope, 0.0)))
+            error = math.sqrt(max(float(slope @ spread @ slope), 0.0))
             free = known[path]
             low, high = value - WIDTH * error, value + WIDTH * error
             sure = bool(np.sqrt(spread[0, 0]) < LEARNED)

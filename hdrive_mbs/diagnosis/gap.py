@@ -50,7 +50,7 @@ def _sums(simulator: Simulator, k: int, values: FloatArray) -> FloatArray:
     span = simulator.segments[k].span
     own = np.where(simulator.held_out[span], values[span], 0.0)
     piece = np.arange(len(own)) * PIECES // len(own)
-    return np.bincount(piece, own**2, minlength=PIECES)
+    return np.asarray(np.bincount(piece, own**2, minlength=PIECES), float)
 
 
 def _drawn(rng: np.random.Generator, counts: FloatArray) -> npt.NDArray[np.int64]:

@@ -131,9 +131,9 @@ class Hypothesis:
             for k, item in enumerate(self.factors):
                 z[k] /= self.loose.get(item.name, 1.0)
         at = len(self.factors)
-        for item in self.added:
-            for unknown in item.unknowns:
-                z[at : at + unknown.size] = start_of(unknown, item.effect, item.name)
+        for added in self.added:
+            for unknown in added.unknowns:
+                z[at : at + unknown.size] = start_of(unknown, added.effect, added.name)
                 at += unknown.size
         return z
 

@@ -23,7 +23,7 @@ def suitable_step(trials: Sequence[Trial], factors: Sequence[Factor]) -> float:
     Raises AnalysisError where no step down to 1/128 of a sample gives a finite run.
     """
     hypothesis = Hypothesis(factors=tuple(factors))
-    every = min(trial.every for trial in trials)
+    every = float(min(trial.every for trial in trials))
     before = None
     for k in range(HALVINGS + 1):
         step = every / 2**k
@@ -32,11 +32,11 @@ def suitable_step(trials: Sequence[Trial], factors: Sequence[Factor]) -> float:
         if residuals is not None and before is not None:
             worst = max(float(np.sqrt(np.mean((residuals - before)[segment.span] ** 2))) for segment in simulator.segments)
             if worst < ERROR:
-                return 2.0 * step
+                return float(2.0 * step)
         before = residuals
     if before is None:
         raise AnalysisError(
             f"The nominal scene cannot be simulated through the records with steps down to {every / 2**HALVINGS:.3g} s; look at its start"
             " values and inputs, or give a shorter step."
         )
-    return every / 2**HALVINGS
+    return float(every / 2**HALVINGS)

@@ -24,8 +24,7 @@ def engine_difference(simulator: Simulator, fitted: Fitted) -> float:
     own = simulator.columns(fitted.hypothesis, fitted.z)[number]
     samples = min(trial.samples, int(LONGEST / trial.every))
     start = simulator.start_of(number, fitted.hypothesis, fitted.z)
-    given = {"initial": dict(start)} if start else {}
-    response = simulate(scene, (samples - 1) * trial.every, sample_step=trial.every, **given)
+    response = simulate(scene, (samples - 1) * trial.every, sample_step=trial.every, initial=dict(start) or None)
     worst = 0.0
     for column, measured in trial.measured.items():
         if measured.late or column not in own:
@@ -33,5 +32,3 @@ def engine_difference(simulator: Simulator, fitted: Fitted) -> float:
         theirs = response.at(measured.channel, trial.times[:samples])
         worst = max(worst, float(np.sqrt(np.mean((theirs - own[column][:samples]) ** 2))) / measured.total)
     return worst
-
-

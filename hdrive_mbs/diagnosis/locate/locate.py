@@ -187,7 +187,7 @@ class Localiser:
         Of 15 right parameters one lies beyond 3 standard deviations every 25th time.
         """
         found: dict[str, float] = {}
-        many = math.log(self._hypothesis.nominal_size)
+        many = math.log(max(self._hypothesis.nominal_size, 1))
         for k, unknown in enumerate(self._hypothesis.unknowns[: self._hypothesis.nominal_size]):
             assert isinstance(unknown, Factor)
             if unknown.wide == 1.0:
