@@ -11,8 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from hdrive_mbs.compiled.groups import groups
 from hdrive_mbs.errors import ParameterError
@@ -41,6 +39,9 @@ class ConstantMass:
         self._blocks = [self._block(np.array(at), matrix) for at in groups((matrix != 0.0) | np.eye(len(matrix), dtype=bool))]
 
     def _block(self, at: npt.NDArray[np.intp], matrix: FloatArray) -> _Block:
+        from scipy.sparse import csr_array
+        from scipy.sparse.csgraph import reverse_cuthill_mckee
+
         order = at if len(at) == 1 else at[reverse_cuthill_mckee(csr_array(matrix[at[:, None], at]), symmetric_mode=True)]
         names = tuple(self.names[k] for k in order)
         part = matrix[order[:, None], order]

@@ -138,5 +138,5 @@ def test_heavy_packages_are_imported_where_they_are_used_and_not_at_the_top() ->
     slow = {"scipy", "pint", "rich", "matplotlib"}
     for module, path in modules().items():
         top = module.split(".")[1] if "." in module else ""
-        if top not in ("analysis", "plots", "cli", "engine", "teeth"):
+        if top not in ("analysis", "diagnosis", "plots", "cli", "engine", "teeth"):
             assert not slow & set(imports(path, at_top=True)), module
