@@ -195,7 +195,9 @@ def compliance(last: Round) -> dict[str, float]:
     null = fit_nominal(simulator, factors)
     (candidate,) = candidates(last.bench.scene, [hm.SeriesCompliance])
     hypothesis = Hypothesis(factors, (candidate.starts[0],))
-    fitted = fit(simulator, hypothesis, hypothesis.start(null.z), steps=30)
+    # from none at all upwards: a nested model must not end above the one it contains
+    starts = [np.append(null.z, share) for share in (0.0, 0.03, 0.1, 0.3, 1.0)]
+    fitted = min((fit(simulator, hypothesis, start, steps=30) for start in starts), key=lambda item: item.cost)
     last_factor = float(hypothesis.values(np.ones(hypothesis.size))[f"{candidate.starts[0].name}.compliance"])
     curvature = fitted.curvature + np.diag(hypothesis.precisions)
     spread = last_factor * float(np.sqrt(np.linalg.inv(curvature)[-1, -1]))

@@ -1,4 +1,4 @@
-"""Friction of robot joints, as a user would write effects of their own: one file, no registration."""
+"""Friction of robot joints and weights on discs, as a user would write effects of their own: one file, no registration."""
 
 from __future__ import annotations
 
@@ -51,3 +51,15 @@ class JointFriction(hm.TorqueEffect):
 
     def torque(self, time: Value, angle: Value, speed: Value) -> Value:
         return -self.coulomb * np.tanh(speed / self.smoothing_speed)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DiscWeight(hm.RotorUnbalance):
+    """Unbalance of a disc in its own plane: weights that are screwed into its holes.
+
+    F = U w^2 exp(i (f + p))
+
+    Source: ISO 21940-2 (static unbalance).  Leaves out the width of the disc: the library's law can lie anywhere beside it.
+    """
+
+    lever: float = parameter("m", "0: in the plane of the disc", default=0.0)

@@ -56,7 +56,7 @@ def _rounds(rows: list[tuple[str, Mapping[str, Any]]]) -> str:
                 behind if odds is None else f"{odds:.0f}",
                 "yes" if item["accepted"] else "no",
                 _values(item),
-                ", ".join(f"{effect} at {at}" for effect, at in item["tied"]) if len(item["tied"]) > 1 else "",
+                ", ".join(f"{effect} at {at}" for effect, at in item["tied"]) if item["tied"] else "",
                 f"{item['gap']['nominal'][0]:.2f} / {item['gap']['refit'][0]:.2f} / {item['gap']['effect'][0]:.2f}",
             )
         )

@@ -23,6 +23,8 @@ def effects(
     network = None if scene is None else open_scene(scene).network()
     library = []
     for name, kind in effect_types().items():
+        if not kind.tried:
+            continue
         fields = []
         for field in dataclasses.fields(kind):
             quantity: Quantity | None = field.metadata.get("quantity")

@@ -52,7 +52,7 @@ def known_effects() -> list[type[Effect]]:
 
     def visit(kind: type[Effect]) -> None:
         for child in kind.__subclasses__():
-            if not inspect.isabstract(child) and _searched(child) and child not in found:
+            if not inspect.isabstract(child) and child.tried and _searched(child) and child not in found:
                 found.append(child)
             visit(child)
 

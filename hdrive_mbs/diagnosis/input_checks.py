@@ -165,6 +165,12 @@ def _check_alive(trial: Trial, column: str, simulated: FloatArray, units: Mappin
         )
 
 
+def _at_first(times: FloatArray, values: FloatArray, power: int) -> float:
+    """Value (power 0) or slope (1) at the first time, by a polynomial of one degree more: a record may start to accelerate."""
+    fitted = np.polynomial.Polynomial.fit(times, values, power + 1)
+    return float((fitted.deriv() if power else fitted)(times[0]))
+
+
 def _check_start(trial: Trial, column: str, simulated: FloatArray, units: Mapping[str, str]) -> None:
     """Speeds at the start: of a speed by its values, of an angle by its slope, which an offset does not change."""
     measured = trial.measured[column]
@@ -176,12 +182,12 @@ def _check_start(trial: Trial, column: str, simulated: FloatArray, units: Mappin
         return
     times = trial.times[first][there]
     if unit == "rad/s" and measured.offset == 0.0:
-        power, scale = 0, 1.0 / np.sqrt(len(times))
+        power, scale = 0, 2.0 / np.sqrt(len(times))
     elif unit == "rad":
-        power, scale = 1, 1.0 / float(np.sqrt(np.sum((times - times.mean()) ** 2)))
+        power, scale = 1, 4.0 / float(np.sqrt(np.sum((times - times.mean()) ** 2)))
     else:
         return
-    real, model = (float(np.polyfit(times - times.mean(), part[first][there], power)[0]) for part in (trial.columns[column], simulated))
+    real, model = (_at_first(times, part[first][there], power) for part in (trial.columns[column], simulated))
     rates = np.diff(trial.columns[column][::FIRST]) / (FIRST * trial.every) if power else trial.columns[column]
     if abs(real - model) > max(START * measured.total * scale, SHARE * _range(rates)):
         raise RecordError(

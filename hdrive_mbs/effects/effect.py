@@ -58,6 +58,8 @@ class Effect(Described, ABC):
     """Whether the effect claims never to give back more than it stores (checked when a scene is assembled)."""
     signature: ClassVar[str] = ""
     """What an engineer would see in a record, in words."""
+    tried: ClassVar[bool] = True
+    """Whether a search tries it without being asked, and lists show it."""
     vectors: ClassVar[tuple[tuple[str, str], ...]] = ()
     """Pairs of fields (amplitude, phase [rad]) in which a search turns amplitude cos and amplitude sin: linear, and no
     phase where the amplitude is zero."""

@@ -253,8 +253,9 @@ def test_what_is_no_effect_class_is_refused() -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class _Own(TorqueEffect):
-    """An effect of a user's own."""
+    """An effect of a user's own, tried only where it is named: other tests search the library."""
 
+    tried: ClassVar[bool] = False
     size: float = parameter("N m", "size", low=0.0, typical=(1e-3, 1.0))
 
     def torque(self, time: Value, angle: Value, speed: Value) -> Value:
@@ -288,6 +289,7 @@ class StateIsNotFinite(MemoryTorqueEffect):
 
     size: float = parameter("N m", "size", low=0.0, typical=(1e-3, 1.0))
     family: ClassVar[str] = "runaway"
+    tried: ClassVar[bool] = False
 
     def states(self) -> Mapping[str, str]:
         return {"level": "1"}
@@ -300,6 +302,8 @@ class StateIsNotFinite(MemoryTorqueEffect):
 
 
 class NothingToSearch(TorqueEffect):
+    tried: ClassVar[bool] = False
+
     def torque(self, time: Value, angle: Value, speed: Value) -> Value:
         return 0.0
 

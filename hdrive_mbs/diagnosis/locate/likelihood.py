@@ -10,7 +10,8 @@ force that explains nothing costs.  Parameters come in linearly with their norma
 Laplace's method.  Source: latent forces after Alvarez, Luengo, Lawrence (2009), with a free spectrum for a covariance;
 evidence after MacKay, Information Theory, Inference and Learning Algorithms, 27.
 
-Leaves out what a force does to the next window, and how the linear model changes within one.
+Leaves out what a force does to the next window, and how the linear model changes within one: places of a line whose vibrations
+last much longer than a window, like those of a rotor with little damping, are not told apart reliably.
 """
 
 from __future__ import annotations

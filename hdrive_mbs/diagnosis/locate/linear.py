@@ -38,13 +38,6 @@ class Linear:
         return Linear(*(np.array([part[span].mean(axis=0) for span in spans]) for part in (self.a, self.b, self.c, self.d)))
 
 
-def slowest_decay(linear: Linear, above: float) -> float:
-    """Decay rate [1/s] of the slowest vibration above a frequency [rad/s], median over the moments; infinite where there is none."""
-    values = np.linalg.eigvals(linear.a)
-    decays = np.where(np.abs(values.imag) > above, -values.real, np.inf)
-    return float(np.median(np.min(decays, axis=1)))
-
-
 def linearised(
     network: Network, channels: Sequence[str], forces: Sequence[str], times: FloatArray, motion: Mapping[str, FloatArray]
 ) -> Linear:
