@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json as json_text
+import os
 import re
 import shutil
 import sys
@@ -54,7 +55,7 @@ def diagnose(
     repair: Annotated[
         list[str] | None, typer.Option("--repair", metavar="FAULT=HOW", help="Repair records, e.g. gaps=interpolate (several times).")
     ] = None,
-    workers: Annotated[int | None, typer.Option(help="Processes on this machine.")] = None,
+    workers: Annotated[int | None, typer.Option(help="Processes on this machine; 2 where it has two cores.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with an interrupted diagnosis in --out.")] = False,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for report, pictures and the improved scene.")] = None,
     json: JsonFile = None,
@@ -77,7 +78,7 @@ def diagnose(
 
     try:
         with stage_bars() as report:
-            result = run(chosen, measured, candidates=kinds, workers=workers, folder=work, report=report)
+            result = run(chosen, measured, candidates=kinds, workers=workers or min(2, os.cpu_count() or 1), folder=work, report=report)
     except KeyboardInterrupt:
         print(f"interrupted; what is done is kept in {work}. The same command with --resume goes on.", file=sys.stderr)
         raise typer.Exit(130) from None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 import platform
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -69,7 +68,7 @@ def diagnose(
         columns are those named like its channels, the noise is estimated and usual tolerances are assumed
     records : one or several, checked (see ``Record.checked``)
     candidates : effect classes to try; all of the library and whatever else has been imported if not given
-    workers : processes; 2 if not given and the machine has them
+    workers : processes; 1 if not given.  With more, a script needs the line ``if __name__ == "__main__":`` before the call
     folder : where fits are kept, so that an interrupted diagnosis goes on from there
     step : of the integration [s]; chosen by halving if not given
     report : called with (stage, done, total)
@@ -96,7 +95,7 @@ def diagnose(
     if folder is not None:
         inputs = {"records": chosen, "bench": known, "candidates": tried, "trials": (trials, factors, known.groups, step, EVERY)}
         journal = Journal(folder, inputs)
-    with Team(workers or min(2, os.cpu_count() or 1), journal) as team:
+    with Team(workers or 1, journal) as team:
         evidence = gather(coarse, fine, factors, known.groups, tried, team, report)
     if watch is not None:
         watch(evidence)
