@@ -114,8 +114,10 @@ def test_the_diagnosis_calls_the_unbalance_of_the_rotor_kit_and_ties_its_planes(
     from benchmarks.real import rk4
     from benchmarks.real.own_effects import DiscWeight
 
-    bench, records = rk4.dwell_case("A019")
-    (found,) = rounds(bench, records, (DiscWeight,), step=rk4.STEP, most=1)
+    bench, records = rk4.dwell_case("A020")  # 24 g mm at each disc, at one speed
+    # short: of what is uncertain only where the probes look, which decides the tie
+    bench = replace(bench, knowledge={name: item for name, item in bench.knowledge.items() if name.startswith("gain")})
+    (found,) = rounds(bench, records, (DiscWeight,), step=1.6 * rk4.STEP, most=1)
     assert {cause.effect for cause in found.answer.causes} == {"unbalance"}
     claimed = {(cause.effect, cause.at) for cause in found.answer.causes}
     assert {("unbalance", "disc_1"), ("unbalance", "disc_2")} <= claimed | set(found.answer.indistinguishable)
