@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, ClassVar, Self
 
 from hdrive_mbs.errors import KeywordError, ParameterError, unknown_place
@@ -57,8 +58,19 @@ class Quantity:
         if not first < last:
             raise ParameterError(f"The typical range ({first:g}, {last:g}) of {self.doc!r} must rise.")
 
+    def allows(self, value: float) -> bool:
+        """Whether the value is finite and in range."""
+        return (
+            math.isfinite(value)
+            and (self.above is None or value > self.above)
+            and (self.low is None or value >= self.low)
+            and (self.high is None or value <= self.high)
+        )
+
     def check(self, where: str, value: float) -> None:
         """Raise ParameterError when the value is not finite or out of range."""
+        if self.allows(value):
+            return
         unit = "" if self.unit == "1" else f" {self.unit}"
         if not math.isfinite(value):
             raise ParameterError(f"{where} = {value}{unit}: must be a finite number ({self.doc}).")
@@ -159,14 +171,14 @@ class Described:
             cls.__doc__ = "\n".join([inspect.cleandoc(cls.__doc__), "", FIELDS, *lines])
 
     def __new__(cls, *values: Any, **fields: Any) -> Self:
-        known = [field.name for field in dataclasses.fields(cls) if field.init]
+        known, needed = _names(cls)  # type: ignore[arg-type]  # classes can be hashed
         if values:
             raise KeywordError(f"{cls.__name__}({values[0]!r}): values are given by name. It has: {', '.join(known)}.")
         for name in fields:
             if name not in known and name not in inspect.signature(cls).parameters:
                 raise KeywordError(f"No field {name!r}. {cls.__name__} has: {', '.join(known)}.")
-        missing = [field for field in dataclasses.fields(cls) if _is_needed(field) and field.name not in fields]
-        if missing:
+        if not needed <= fields.keys():
+            missing = [field for field in dataclasses.fields(cls) if field.name in needed and field.name not in fields]
             wanted = inspect.signature(cls).parameters  # of an initialiser of the class's own, not all fields
             said = [_field_line(field.name, field).strip() for field in missing if field.name in wanted]
             if said:
@@ -178,9 +190,10 @@ class Described:
         return _without_fields, (type(self),), self.__dict__
 
     def __post_init__(self) -> None:
-        for field in dataclasses.fields(self):
-            quantity: Quantity | None = field.metadata.get("quantity")
+        for field, quantity in _checked(type(self)):  # type: ignore[arg-type]
             value = getattr(self, field.name)
+            if type(value) is float and quantity is not None and not quantity.sequence and quantity.allows(value):
+                continue
             if value is None and field.default is None:
                 continue
             if quantity is not None:
@@ -269,6 +282,19 @@ def _without_fields(cls: type[Described]) -> Described:
     return object.__new__(cls)
 
 
+@cache
+def _names(cls: type[Described]) -> tuple[tuple[str, ...], frozenset[str]]:
+    """Fields that a class takes, and those of them without a default."""
+    fields = dataclasses.fields(cls)
+    return tuple(field.name for field in fields if field.init), frozenset(field.name for field in fields if _is_needed(field))
+
+
+@cache
+def _checked(cls: type[Described]) -> tuple[tuple[dataclasses.Field[Any], Quantity | None], ...]:
+    """Fields of a class with their quantities."""
+    return tuple((field, field.metadata.get("quantity")) for field in dataclasses.fields(cls))
+
+
 def _is_needed(field: dataclasses.Field[Any]) -> bool:
     return field.init and field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
 
@@ -301,7 +327,7 @@ def _as_float(where: str, value: Any, unit: str) -> float:
 
 def _check_option(where: str, value: Any, annotation: str, doc: str) -> None:
     """Refuse a switch that is no bool, a name that is no text, and a law that cannot be called."""
-    kinds = {kind.strip() for kind in annotation.split("|")}
+    kinds = _kinds(annotation)
     if kinds == {"bool"} and not isinstance(value, bool):
         raise ParameterError(f"{where} = {value!r}: must be True or False ({doc}).")
     if kinds <= {"str", "None"} and not isinstance(value, str):
@@ -313,6 +339,11 @@ def _check_option(where: str, value: Any, annotation: str, doc: str) -> None:
         if only_function or not isinstance(value, Described):
             wanted = "a Python function" if only_function else "a law of the library or a Python function"
             raise ParameterError(f"{where} = {readable(value, None)}: must be {wanted} ({doc}).")
+
+
+@cache
+def _kinds(annotation: str) -> frozenset[str]:
+    return frozenset(kind.strip() for kind in annotation.split("|"))
 
 
 def readable(value: Any, quantity: Quantity | None) -> str:

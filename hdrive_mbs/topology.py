@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -15,6 +17,57 @@ from hdrive_mbs.network.node import Node
 from hdrive_mbs.network.rigid_mass import NOTHING, RigidMass
 
 GROUND = "ground"
+KEPT = 128
+"""Scenes whose layout is kept: they differ in what parts there are and how they are joined, not in masses or stiffnesses."""
+
+Chains = tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class _Mouth:
+    """What of a flange decides how it can be joined."""
+
+    path: str
+    name: str
+    optional: bool
+    lateral: bool
+    is_rotor: bool
+    axial: float
+    free: bool
+
+
+@dataclass(frozen=True)
+class _Outline:
+    """What of a part decides how a scene hangs together: everything but masses and laws."""
+
+    name: str
+    kind: str
+    entry: str
+    exit: str
+    rigid: bool
+    is_motor: bool
+    flanges: tuple[_Mouth, ...]
+    relations: tuple[tuple[tuple[str, float], ...], ...]
+
+
+Outlines = tuple[_Outline, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Layout:
+    """How a scene hangs together.
+
+    nodes : flange path -> name of its node;  ratios : of each node, see _ideal_ratios
+    lateral : nodes that move across the axis;  rotors : node -> flange that makes it a rigid body
+    places : node -> axial position [m];  offsets : flange path -> axial distance from there [m]
+    """
+
+    nodes: Mapping[str, str]
+    ratios: Mapping[str, float]
+    lateral: frozenset[str]
+    rotors: Mapping[str, str]
+    places: Mapping[str, float]
+    offsets: Mapping[str, float]
 
 
 def _path(part: str, flange: Flange) -> str:
@@ -26,7 +79,25 @@ def resolve_flanges(parts: Mapping[str, Component]) -> dict[str, Flange]:
     return {_path(name, flange): flange for name, part in parts.items() for flange in part.flanges()}
 
 
-def _end(place: str, parts: Mapping[str, Component], flanges: Mapping[str, Flange], leaving: bool) -> str:
+def _outlines(parts: Mapping[str, Component]) -> Outlines:
+    return tuple([_outline(name, part, part.flanges()) for name, part in parts.items()])
+
+
+def _outline(name: str, part: Component, flanges: Sequence[Flange]) -> _Outline:
+    mouths = tuple([_Mouth(_path(name, f), f.name, f.optional, f.lateral, f.is_rotor, f.axial, f.free) for f in flanges])
+    relations = tuple([tuple(relation.items()) for relation in part.relations()])
+    return _Outline(name, type(part).__name__, part.entry, part.exit, part.rigid, isinstance(part, Motor), mouths, relations)
+
+
+def _chains(connections: Sequence[Sequence[str]]) -> Chains:
+    return tuple(tuple(chain) for chain in connections)
+
+
+def _mouths(parts: Outlines) -> dict[str, _Mouth]:
+    return {flange.path: flange for part in parts for flange in part.flanges}
+
+
+def _end(place: str, parts: Mapping[str, _Outline], flanges: Mapping[str, _Mouth], leaving: bool) -> str:
     """Flange path of a place in a chain, on the side towards its neighbour."""
     if place == GROUND:
         return GROUND
@@ -36,44 +107,53 @@ def _end(place: str, parts: Mapping[str, Component], flanges: Mapping[str, Flang
         raise unknown_place("place", place, [*parts, *(p for p in flanges if "." in p), GROUND])
     part = parts[place]
     flange = part.exit if leaving else part.entry
-    if not part.flanges():
-        raise SceneError(f"{place!r} ({type(part).__name__}) has no flange to connect.")
+    if not part.flanges:
+        raise SceneError(f"{place!r} ({part.kind}) has no flange to connect.")
     return f"{place}.{flange}" if flange else place
 
 
 def joints(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> list[tuple[str, str]]:
     """Pairs of flange paths that are rigidly joined."""
+    return list(_joints(_outlines(parts), _chains(connections)))
+
+
+@lru_cache(maxsize=KEPT)
+def _joints(parts: Outlines, connections: Chains) -> tuple[tuple[str, str], ...]:
     pairs = []
-    flanges = resolve_flanges(parts)
+    flanges, known = _mouths(parts), {part.name: part for part in parts}
     for chain in connections:
         if len(chain) < 2:
             raise SceneError(f"Connection {tuple(chain)}: a connection names at least two places.")
         for left, right in itertools.pairwise(chain):
             if left == right and left in flanges:
                 raise SceneError(f"Connection {tuple(chain)} joins {left!r} to itself; name each place once.")
-            pairs.append((_end(left, parts, flanges, leaving=True), _end(right, parts, flanges, leaving=False)))
-    return pairs
+            pairs.append((_end(left, known, flanges, leaving=True), _end(right, known, flanges, leaving=False)))
+    return tuple(pairs)
 
 
 def check_connections(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> None:
     """Raise SceneError for a loose end and PlaceError for an unknown place."""
-    used = {path for pair in joints(parts, connections) for path in pair}
-    alone = len([name for name, part in parts.items() if part.flanges()]) == 1
-    for name, part in parts.items():
-        flanges = part.flanges()
-        for flange in flanges:
-            path = _path(name, flange)
-            if path in used or flange.optional or flange.free or (alone and len(flanges) == 1):
+    _check(_outlines(parts), _chains(connections))
+
+
+@lru_cache(maxsize=KEPT)
+def _check(parts: Outlines, connections: Chains) -> None:
+    used = {path for pair in _joints(parts, connections) for path in pair}
+    alone = len([part for part in parts if part.flanges]) == 1
+    for part in parts:
+        for flange in part.flanges:
+            path = flange.path
+            if path in used or flange.optional or flange.free or (alone and len(part.flanges) == 1):
                 continue
             raise SceneError(
-                f"Loose end: nothing is connected to {path!r} ({type(part).__name__}). "
-                f"Add it to a connection, e.g. ({path!r}, 'ground'), or remove {name!r}."
+                f"Loose end: nothing is connected to {path!r} ({part.kind}). "
+                f"Add it to a connection, e.g. ({path!r}, 'ground'), or remove {part.name!r}."
             )
 
 
-def _group(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> dict[str, str]:
+def _group(parts: Outlines, connections: Chains) -> dict[str, str]:
     """Flange path -> name of its node, in the order of the connections.  A node is named after its first part with a body."""
-    flanges = resolve_flanges(parts)
+    flanges = _mouths(parts)
     parent = {path: path for path in [*flanges, GROUND]}
 
     def root(path: str) -> str:
@@ -81,19 +161,19 @@ def _group(parts: Mapping[str, Component], connections: Sequence[Sequence[str]])
             path = parent[path]
         return path
 
-    pairs = joints(parts, connections)
+    pairs = list(_joints(parts, connections))
     used = {path for pair in pairs for path in pair}
     pairs += [(path, GROUND) for path, flange in flanges.items() if flange.optional and path not in used]
-    for name, part in parts.items():
+    for part in parts:
         if part.rigid:
-            first, *others = [_path(name, flange) for flange in part.flanges()]
+            first, *others = [flange.path for flange in part.flanges]
             pairs += [(first, other) for other in others]
     for a, b in pairs:
         parent[root(a)] = root(b)
     members: dict[str, list[str]] = {}
     for path in [*flanges, GROUND]:
         members.setdefault(root(path), []).append(path)
-    line = {path: k for k, path in enumerate(path for pair in joints(parts, connections) for path in pair)}
+    line = {path: k for k, path in enumerate(path for pair in _joints(parts, connections) for path in pair)}
     names: dict[str, str] = {}
     for paths in sorted(members.values(), key=lambda group: min(line.get(path, len(line)) for path in group)):
         # rotors name the node, then single-flange parts (motor, load); then gears; then shaft ends
@@ -103,7 +183,7 @@ def _group(parts: Mapping[str, Component], connections: Sequence[Sequence[str]])
     return names
 
 
-def _ideal_ratios(parts: Mapping[str, Component], names: Mapping[str, str]) -> dict[str, float]:
+def _ideal_ratios(parts: Outlines, names: Mapping[str, str]) -> dict[str, float]:
     """True-sense speed of each node for unit speed of the motor, all elasticities rigid.
 
     Solves the parts' linear relations in the least-squares sense; optional flanges are weakly
@@ -121,18 +201,18 @@ def _ideal_ratios(parts: Mapping[str, Component], names: Mapping[str, str]) -> d
         rows.append(weight * row)
         right.append(weight * value)
 
-    for name, part in parts.items():
-        for relation in part.relations():
-            scale = 1.0 / max(abs(value) for value in relation.values())
+    for part in parts:
+        for relation in part.relations:
+            scale = 1.0 / max(abs(value) for _, value in relation)
             joined: dict[str, float] = {}
-            for flange, value in relation.items():
-                node = names[f"{name}.{flange}"]
+            for flange, value in relation:
+                node = names[f"{part.name}.{flange}"]
                 joined[node] = joined.get(node, 0.0) + scale * value
             add(joined, 0.0)
-        for flange_data in part.flanges():
-            if flange_data.optional:
-                add({names[_path(name, flange_data)]: 1.0}, 0.0, weight=1e-6)
-    motor = next((name for name, part in parts.items() if isinstance(part, Motor)), None)
+        for mouth in part.flanges:
+            if mouth.optional:
+                add({names[mouth.path]: 1.0}, 0.0, weight=1e-6)
+    motor = next((part.name for part in parts if part.is_motor), None)
     reference = names[motor] if motor else next((node for node in nodes if node != GROUND), nodes[0])
     known = {reference: 1.0, GROUND: 0.0}  # exactly, whatever shafts to the ground would like
     free = [i for node, i in index.items() if node not in known]
@@ -144,14 +224,14 @@ def _ideal_ratios(parts: Mapping[str, Component], names: Mapping[str, str]) -> d
     return {node: ratios[node] for node in nodes}
 
 
-def _steps(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> list[tuple[str, str, float, bool]]:
+def _steps(parts: Outlines, connections: Chains) -> list[tuple[str, str, float, bool]]:
     """Pairs of flanges, the axial distance [m] from the first to the second, and whether they move as one."""
-    steps = [(left, right, 0.0, True) for left, right in joints(parts, connections) if GROUND not in (left, right)]
-    for name, part in parts.items():
-        flanges = part.flanges()
-        for flange in flanges[1:]:
+    steps = [(left, right, 0.0, True) for left, right in _joints(parts, connections) if GROUND not in (left, right)]
+    for part in parts:
+        for flange in part.flanges[1:]:
             if flange.lateral or part.rigid:
-                steps.append((_path(name, flanges[0]), _path(name, flange), flange.axial - flanges[0].axial, part.rigid))
+                first = part.flanges[0]
+                steps.append((first.path, flange.path, flange.axial - first.axial, part.rigid))
     return steps
 
 
@@ -170,12 +250,12 @@ def _walk(start: str, steps: Sequence[tuple[str, str, float, bool]], *, rigid: b
     return found
 
 
-def _positions(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> dict[str, float]:
+def _positions(parts: Outlines, connections: Chains) -> dict[str, float]:
     """Axial position of every flange [m]; each line begins at 0 with its first flange."""
     steps = _steps(parts, connections)
     found: dict[str, float] = {}
-    order = [path for pair in joints(parts, connections) for path in pair if path != GROUND]
-    for path in [*order, *resolve_flanges(parts)]:
+    order = [path for pair in _joints(parts, connections) for path in pair if path != GROUND]
+    for path in [*order, *_mouths(parts)]:
         if path not in found:
             reached = _walk(path, steps, rigid=False)
             lowest = min(reached.values())
@@ -190,31 +270,39 @@ def _positions(parts: Mapping[str, Component], connections: Sequence[Sequence[st
     return found
 
 
-def start_draft(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> Draft:
-    """A draft with all nodes (inertias summed) and no elements yet."""
+@lru_cache(maxsize=KEPT)
+def _layout(parts: Outlines, connections: Chains) -> _Layout:
     names = _group(parts, connections)
     ratios = _ideal_ratios(parts, names)
-    flanges = resolve_flanges(parts)
-    inertias: dict[str, float] = dict.fromkeys(ratios, 0.0)
-    for path, flange in flanges.items():
-        inertias[names[path]] += flange.inertia
-    lateral = {names[path] for path, flange in flanges.items() if flange.lateral} - {GROUND}
+    flanges = _mouths(parts)
+    lateral = frozenset({names[path] for path, flange in flanges.items() if flange.lateral} - {GROUND})
     positions = _positions(parts, connections) if lateral else {}
-    masses: dict[str, RigidMass] = dict.fromkeys(lateral, NOTHING)
     rotors: dict[str, str] = {}
     for path, flange in flanges.items():
         if flange.is_rotor:
             rotors.setdefault(names[path], path)
-    reference = {node: rotors.get(node, node) for node in lateral}
-    offsets = {path: positions[path] - positions[reference[node]] for path, node in names.items() if node in lateral and path in positions}
-    for path, flange in flanges.items():
-        if names[path] in lateral:
-            masses[names[path]] += flange.mass.moved(offsets[path])
+    places = {node: positions[rotors.get(node, node)] for node in lateral}
+    offsets = {path: positions[path] - places[node] for path, node in names.items() if node in lateral and path in positions}
+    return _Layout(names, ratios, lateral, rotors, places, offsets)
+
+
+def start_draft(parts: Mapping[str, Component], connections: Sequence[Sequence[str]]) -> Draft:
+    """A draft with all nodes (inertias summed) and no elements yet."""
+    own = {name: part.flanges() for name, part in parts.items()}
+    layout = _layout(tuple([_outline(name, part, own[name]) for name, part in parts.items()]), _chains(connections))
+    names, lateral, offsets = layout.nodes, layout.lateral, layout.offsets
+    inertias: dict[str, float] = dict.fromkeys(layout.ratios, 0.0)
+    masses: dict[str, RigidMass] = dict.fromkeys(lateral, NOTHING)
+    for path, flange in {_path(name, flange): flange for name in parts for flange in own[name]}.items():
+        node = names[path]
+        inertias[node] += flange.inertia
+        if node in lateral:
+            masses[node] += flange.mass.moved(offsets[path])
     nodes = {}
-    for node, ratio in ratios.items():
+    for node, ratio in layout.ratios.items():
         sense, turns = (-1 if ratio < -1e-9 else 1), (0.0 if abs(ratio) < 1e-9 else round(ratio, 12))
         if node in lateral:
-            nodes[node] = Node(node, inertias[node], sense, turns, True, masses[node], node in rotors, positions[reference[node]])
+            nodes[node] = Node(node, inertias[node], sense, turns, True, masses[node], node in layout.rotors, layout.places[node])
         else:
             nodes[node] = Node(node, inertias[node], sense, turns)
     places = {path: node for path, node in names.items() if path != GROUND} | {GROUND: GROUND}

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -23,12 +24,25 @@ NEGLIGIBLE = 1e-13
 
 
 @dataclass(frozen=True, eq=False)
+class _Factor:
+    """A part of a mass matrix as L D L^T, its rows in their new order.
+
+    order : rows of the part
+    below, right : entries of L left of the diagonal in each row, and under it in each column: (other index, value)
+    inverse : of the diagonal D, and ``root`` the matrix L D^(1/2)
+    """
+
+    order: tuple[int, ...]
+    below: tuple[tuple[tuple[int, float], ...], ...]
+    right: tuple[tuple[tuple[int, float], ...], ...]
+    inverse: tuple[float, ...]
+    root: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
 class _Block:
     names: tuple[str, ...]
-    lower: FloatArray
-    """L, with 1 on its diagonal."""
-    inverse: FloatArray
-    """Of the diagonal D, shape (n,)."""
+    factor: _Factor
 
 
 class ConstantMass:
@@ -36,53 +50,79 @@ class ConstantMass:
 
     def __init__(self, names: Sequence[str], matrix: FloatArray) -> None:
         self.names = tuple(names)
-        self._blocks = [self._block(np.array(at), matrix) for at in groups((matrix != 0.0) | np.eye(len(matrix), dtype=bool))]
+        self._blocks = [self._block(at, matrix) for at in groups((matrix != 0.0) | np.eye(len(matrix), dtype=bool))]
 
-    def _block(self, at: npt.NDArray[np.intp], matrix: FloatArray) -> _Block:
-        from scipy.sparse import csr_array
-        from scipy.sparse.csgraph import reverse_cuthill_mckee
-
-        order = at if len(at) == 1 else at[reverse_cuthill_mckee(csr_array(matrix[at[:, None], at]), symmetric_mode=True)]
-        names = tuple(self.names[k] for k in order)
-        part = matrix[order[:, None], order]
-        try:
-            root = np.sqrt(part) if len(at) == 1 and part[0, 0] > 0.0 else np.linalg.cholesky(part)
-        except np.linalg.LinAlgError:
+    def _block(self, at: Sequence[int], matrix: FloatArray) -> _Block:
+        part = matrix[at[0], at[0]] if len(at) == 1 else matrix[np.array(at)[:, None], at]
+        factor = _factor(len(at), part.tobytes())
+        if factor is None:
             raise ParameterError(
-                f"The masses of {', '.join(names)} are not positive: give each of these places mass and inertia."
-            ) from None
-        diagonal = np.diag(root)
-        lower = root / diagonal
-        lower[np.abs(root) < NEGLIGIBLE * diagonal[:, None]] = 0.0
-        return _Block(names, lower, 1.0 / diagonal**2)
+                f"The masses of {', '.join(self.names[k] for k in at)} are not positive: give each of these places mass and inertia."
+            )
+        return _Block(tuple([self.names[at[k]] for k in factor.order]), factor)
 
     def solve(self, forces: Mapping[str, Value]) -> dict[str, Value]:
         """Accelerations of all coordinates; a missing force is zero."""
         found: dict[str, Value] = {}
         for block in self._blocks:
-            n = len(block.names)
+            factor = block.factor
             passed: list[Value] = []
-            for i, name in enumerate(block.names):
+            for name, row in zip(block.names, factor.below, strict=True):
                 value = forces.get(name, 0.0)
-                for j in np.flatnonzero(block.lower[i, :i]):
-                    value = value - float(block.lower[i, j]) * passed[j]
+                for j, entry in row:
+                    value = value - entry * passed[j]
                 passed.append(value)
-            solved = [float(inverse) * value for inverse, value in zip(block.inverse, passed, strict=True)]
-            for i in reversed(range(n)):
-                for j in np.flatnonzero(block.lower[:, i]):
-                    if j > i:
-                        solved[i] = solved[i] - float(block.lower[j, i]) * solved[j]
+            solved = [inverse * value for inverse, value in zip(factor.inverse, passed, strict=True)]
+            for i in reversed(range(len(solved))):
+                for j, entry in factor.right[i]:
+                    solved[i] = solved[i] - entry * solved[j]
             found |= dict(zip(block.names, solved, strict=True))
         return found
 
     def column(self, force: Mapping[str, float]) -> dict[str, float]:
         """Accelerations from these forces alone, without those that are rounding."""
-        owners = [block for block in self._blocks if any(force.get(name, 0.0) != 0.0 for name in block.names)]
         found: dict[str, float] = {}
-        for block in owners:
-            root = block.lower / np.sqrt(block.inverse)
-            given = np.array([force.get(name, 0.0) for name in block.names])
-            solved = np.linalg.solve(root.T, np.linalg.solve(root, given))
-            size = np.abs(solved) * np.linalg.norm(root, axis=1)
-            found |= {name: float(a) for name, a, s in zip(block.names, solved, size, strict=True) if s > NEGLIGIBLE * size.max()}
+        for block in self._blocks:
+            given = [force.get(name, 0.0) for name in block.names]
+            if any(given):
+                found |= {block.names[k]: value for k, value in _column(block.factor, tuple(given))}
         return found
+
+
+@lru_cache(maxsize=1024)
+def _factor(size: int, entries: bytes) -> _Factor | None:
+    """Of a matrix; None where it is not positive definite."""
+    matrix = np.frombuffer(entries).reshape(size, size)
+    if size == 1 and matrix[0, 0] > 0.0:
+        order, root = np.zeros(1, int), np.sqrt(matrix)
+    else:
+        order = _cuthill_mckee(matrix)
+        try:
+            root = np.linalg.cholesky(matrix[order[:, None], order])
+        except np.linalg.LinAlgError:
+            return None
+    diagonal = np.diag(root)
+    lower = root / diagonal
+    lower[np.abs(root) < NEGLIGIBLE * diagonal[:, None]] = 0.0
+    inverse = 1.0 / diagonal**2
+    below = tuple(tuple((j, float(lower[i, j])) for j in np.flatnonzero(lower[i, :i]).tolist()) for i in range(size))
+    right = tuple(tuple((j, float(lower[j, i])) for j in np.flatnonzero(lower[:, i]).tolist() if j > i) for i in range(size))
+    return _Factor(tuple(order.tolist()), below, right, tuple(inverse.tolist()), lower / np.sqrt(inverse))
+
+
+def _cuthill_mckee(matrix: FloatArray) -> npt.NDArray[np.intp]:
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+    if len(matrix) == 1:
+        return np.zeros(1, np.intp)
+    return np.asarray(reverse_cuthill_mckee(csr_array(matrix), symmetric_mode=True), np.intp)
+
+
+@lru_cache(maxsize=1024)
+def _column(factor: _Factor, given: tuple[float, ...]) -> tuple[tuple[int, float], ...]:
+    """Place and value of the accelerations from given forces."""
+    root = factor.root
+    solved = np.linalg.solve(root.T, np.linalg.solve(root, np.array(given)))
+    size = np.abs(solved) * np.linalg.norm(root, axis=1)
+    return tuple((k, value) for k, (value, s) in enumerate(zip(solved.tolist(), size, strict=True)) if s > NEGLIGIBLE * size.max())

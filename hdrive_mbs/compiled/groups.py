@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import lru_cache
+
 import numpy as np
 import numpy.typing as npt
 
 
-def groups(joined: npt.NDArray[np.bool_]) -> list[list[int]]:
+def groups(joined: npt.NDArray[np.bool_]) -> Sequence[Sequence[int]]:
     """Groups of rows and columns of a square matrix that are joined by its entries, those with no entry left out."""
-    owner = list(range(len(joined)))
+    return _groups(len(joined), joined.tobytes())
+
+
+@lru_cache(maxsize=1024)
+def _groups(size: int, entries: bytes) -> tuple[tuple[int, ...], ...]:
+    joined = np.frombuffer(entries, bool).reshape(size, size)
+    owner = list(range(size))
 
     def root(k: int) -> int:
         while owner[k] != k:
@@ -22,4 +31,4 @@ def groups(joined: npt.NDArray[np.bool_]) -> list[list[int]]:
     found: dict[int, list[int]] = {}
     for k in sorted({k for pair in pairs for k in pair}):
         found.setdefault(root(k), []).append(k)
-    return list(found.values())
+    return tuple(tuple(members) for members in found.values())

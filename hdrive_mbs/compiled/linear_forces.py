@@ -8,8 +8,10 @@ of a matrix, its diagonal scaled to 1, count as zero.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +27,23 @@ FloatArray = npt.NDArray[np.float64]
 Factors = tuple[tuple[str, float], ...]
 
 
+@dataclass(frozen=True)
+class _Direction:
+    """What a spring is stretched by, over the places of a matrix: factors, and those to the digits that tell springs apart."""
+
+    factors: tuple[tuple[int, float], ...]
+    digits: tuple[tuple[int, int, int], ...]
+
+
+@dataclass(frozen=True)
+class _Share:
+    """A part of a matrix: springs, with the stiffness (or damping) of each, or entries row by row."""
+
+    is_stiffness: bool
+    springs: tuple[tuple[float, _Direction], ...]
+    entries: tuple[tuple[int, int, float], ...]
+
+
 @dataclass
 class _Line:
     """Spring and damper along one combination of coordinates."""
@@ -37,6 +56,29 @@ class _Line:
     def ratio(self) -> float:
         """Damping over stiffness [s]; 0 where one is missing."""
         return self.damping / self.stiffness if self.stiffness else 0.0
+
+    @cached_property
+    def grouped(self) -> dict[float, list[tuple[str, bool]]]:
+        """Magnitude of a factor -> coordinates, and whether it is positive; the positive ones first."""
+        found: dict[float, list[tuple[str, bool]]] = {}
+        for name, factor in self.factors:
+            found.setdefault(abs(factor), []).append((name, factor > 0.0))
+        return {size: sorted(items, key=lambda item: not item[1]) for size, items in found.items()}
+
+    @property
+    def cost(self) -> int:
+        """Operations of its stretch."""
+        return len(self.factors) - 1 + sum([size != 1.0 for size in self.grouped])
+
+    def stretch(self, values: Mapping[str, Value]) -> Value:
+        """By what coordinates with these values stretch it."""
+        total: Value = 0.0
+        for size, items in self.grouped.items():
+            inner: Value = 0.0
+            for name, positive in items:
+                inner = inner + values[name] if positive else inner - values[name]
+            total = total + size * inner
+        return total
 
 
 @dataclass
@@ -56,18 +98,19 @@ def linear_forces(elements: Sequence[MatrixElement], moment: Moment, others: Map
     lines: dict[tuple[tuple[str, int, int], ...], _Line] = {}
     terms = _Terms({name: [value] for name, value in others.items()}, {})
     for element in elements:
-        known: dict[tuple[str, ...], tuple[FloatArray, list[Spring] | None]] = {}
-        for kind, matrix in (("stiffness", element.stiffness), ("damping", element.damping)):
-            for at in groups(matrix != 0.0):
-                names, part = tuple(element.coordinates[k] for k in at), matrix[np.array(at)[:, None], at]
-                found = _proportional(part, *known[names]) if names in known else springs(part)
-                known[names] = part, found
-                if found is None or sum(2 * np.count_nonzero(spring.factors) for spring in found) > np.count_nonzero(part):
-                    values = moment.angles if kind == "stiffness" else moment.speeds
-                    for i, j in np.argwhere(part).tolist():
-                        terms.resist(names[i], abs(float(part[i, j])) * values[names[j]], positive=part[i, j] > 0.0)
+        names = element.coordinates
+        for share in _shares(len(names), _written(element.stiffness), _written(element.damping)):
+            values = moment.angles if share.is_stiffness else moment.speeds
+            for i, j, entry in share.entries:
+                terms.resist(names[i], abs(entry) * values[names[j]], positive=entry > 0.0)
+            for stiffness, along in share.springs:
+                key = tuple([(names[k], mantissa, exponent) for k, mantissa, exponent in along.digits])
+                if key not in lines:
+                    lines[key] = _Line(tuple([(names[k], factor) for k, factor in along.factors]))
+                if share.is_stiffness:
+                    lines[key].stiffness += stiffness
                 else:
-                    _add_springs(kind, names, found, lines)
+                    lines[key].damping += stiffness
     for ratio, same in _by_ratio(list(lines.values())).items():
         _add_lines(ratio, same, terms, moment)
     total: dict[str, Value] = {}
@@ -78,6 +121,29 @@ def linear_forces(elements: Sequence[MatrixElement], moment: Moment, others: Map
     return total
 
 
+def _written(matrix: FloatArray) -> bytes:
+    return np.ascontiguousarray(matrix, float).tobytes()
+
+
+@lru_cache(maxsize=1024)
+def _shares(size: int, stiffness: bytes, damping: bytes) -> tuple[_Share, ...]:
+    """The parts of the stiffness and the damping of an element."""
+    made: list[_Share] = []
+    known: dict[Sequence[int], tuple[FloatArray, list[Spring] | None]] = {}
+    for is_stiffness, entries in ((True, stiffness), (False, damping)):
+        matrix = np.frombuffer(entries).reshape(size, size)
+        for at in groups(matrix != 0.0):
+            part = matrix[np.array(at)[:, None], at]
+            found = _proportional(part, *known[at]) if at in known else springs(part)
+            known[at] = part, found
+            if found is None or sum(2 * np.count_nonzero(spring.factors) for spring in found) > np.count_nonzero(part):
+                full = tuple((at[i], at[j], float(part[i, j])) for i, j in np.argwhere(part).tolist())
+                made.append(_Share(is_stiffness, (), full))
+            else:
+                made.append(_Share(is_stiffness, tuple((spring.stiffness, _direction(at, spring)) for spring in found), ()))
+    return tuple(made)
+
+
 def _proportional(part: FloatArray, before: FloatArray, found: list[Spring] | None) -> list[Spring] | None:
     """The springs of a matrix, taken from those of another one if it is a multiple of it."""
     ratio = float(part[0, 0] / before[0, 0]) if before[0, 0] else 0.0
@@ -86,21 +152,18 @@ def _proportional(part: FloatArray, before: FloatArray, found: list[Spring] | No
     return [Spring(ratio * spring.stiffness, spring.factors) for spring in found]
 
 
-def _add_springs(kind: str, names: Sequence[str], found: Sequence[Spring], lines: dict[tuple[tuple[str, int, int], ...], _Line]) -> None:
-    for spring in found:
-        factors = tuple((name, float(factor)) for name, factor in zip(names, spring.factors, strict=True) if factor)
-        total = sum(factor for _, factor in factors)
-        if total < -NEGLIGIBLE or (abs(total) <= NEGLIGIBLE and factors[0][1] < 0.0):
-            factors = tuple((name, -factor) for name, factor in factors)
-        key = tuple((name, *_digits(factor)) for name, factor in factors)
-        line = lines.setdefault(key, _Line(factors))
-        setattr(line, kind, getattr(line, kind) + spring.stiffness)
+def _direction(at: Sequence[int], spring: Spring) -> _Direction:
+    factors = tuple((place, float(factor)) for place, factor in zip(at, spring.factors, strict=True) if factor)
+    total = sum(factor for _, factor in factors)
+    if total < -NEGLIGIBLE or (abs(total) <= NEGLIGIBLE and factors[0][1] < 0.0):
+        factors = tuple((place, -factor) for place, factor in factors)
+    return _Direction(factors, tuple((place, *_digits(factor)) for place, factor in factors))
 
 
 def _digits(factor: float) -> tuple[int, int]:
     """A key that is the same for factors that differ by rounding."""
-    mantissa, exponent = np.frexp(factor)
-    return round(float(mantissa) * 1e9), int(exponent)
+    mantissa, exponent = math.frexp(factor)
+    return round(mantissa * 1e9), exponent
 
 
 def _by_ratio(lines: Sequence[_Line]) -> dict[float, list[_Line]]:
@@ -112,32 +175,9 @@ def _by_ratio(lines: Sequence[_Line]) -> dict[float, list[_Line]]:
     plain = groups.pop(0.0, [])
     for ratio in list(groups):
         used = {name for line in groups[ratio] for name, _ in line.factors}
-        if 2 * len(used) >= sum(_cost(line.factors) + 2 for line in groups[ratio]):
+        if 2 * len(used) >= sum(line.cost + 2 for line in groups[ratio]):
             plain += groups.pop(ratio)
     return {0.0: plain, **groups}
-
-
-def _grouped(factors: Factors) -> dict[float, list[tuple[str, bool]]]:
-    """Magnitude of a factor -> coordinates, and whether it is positive; the positive ones first."""
-    found: dict[float, list[tuple[str, bool]]] = {}
-    for name, factor in factors:
-        found.setdefault(abs(factor), []).append((name, factor > 0.0))
-    return {size: sorted(items, key=lambda item: not item[1]) for size, items in found.items()}
-
-
-def _cost(factors: Factors) -> int:
-    """Operations of a stretch."""
-    return len(factors) - 1 + sum(size != 1.0 for size in _grouped(factors))
-
-
-def _stretch(factors: Factors, values: Mapping[str, Value]) -> Value:
-    total: Value = 0.0
-    for size, items in _grouped(factors).items():
-        inner: Value = 0.0
-        for name, positive in items:
-            inner = inner + values[name] if positive else inner - values[name]
-        total = total + size * inner
-    return total
 
 
 def _add_lines(ratio: float, lines: Sequence[_Line], terms: _Terms, moment: Moment) -> None:
@@ -146,13 +186,13 @@ def _add_lines(ratio: float, lines: Sequence[_Line], terms: _Terms, moment: Mome
     for line in lines:
         force: Value = 0.0
         if ratio:
-            force = line.stiffness * _stretch(line.factors, moved)
+            force = line.stiffness * line.stretch(moved)
         else:
             if line.stiffness:
-                force = force + line.stiffness * _stretch(line.factors, moment.angles)
+                force = force + line.stiffness * line.stretch(moment.angles)
             if line.damping:
-                force = force + line.damping * _stretch(line.factors, moment.speeds)
-        for size, items in _grouped(line.factors).items():
+                force = force + line.damping * line.stretch(moment.speeds)
+        for size, items in line.grouped.items():
             part = size * force
             for name, positive in items:
                 terms.resist(name, part, positive=positive)

@@ -57,9 +57,11 @@ def program(rates: Sequence[Expression], readings: Sequence[Expression], variabl
     constants: list[float] = []
     tables: dict[bytes, tuple[int, Pieces]] = {}
     for k, node in enumerate(ordered):
-        operation, data = node.operation, node.data
+        operation, data, arguments = node.operation, node.data, node.arguments
         place[id(node)] = k
-        if operation == "constant":
+        if len(arguments) == 2:
+            form.append((operation, None, (place[id(arguments[0])], place[id(arguments[1])])))
+        elif operation == "constant":
             if data in WRITTEN or (id(node) in exponents and abs(data) <= 9.0 and (2.0 * data).is_integer()):
                 form.append(("number", data, ()))
             else:
@@ -69,9 +71,9 @@ def program(rates: Sequence[Expression], readings: Sequence[Expression], variabl
             form.append(("variable", data, ()))
         elif operation == "pieces":
             number, _ = tables.setdefault(digest(data), (len(tables), data))
-            form.append(("pieces", (number, data.coefficients.shape[1]), (place[id(node.arguments[0])],)))
+            form.append(("pieces", (number, data.coefficients.shape[1]), (place[id(arguments[0])],)))
         else:
-            form.append((operation, None, tuple([place[id(item)] for item in node.arguments])))
+            form.append((operation, None, tuple([place[id(item)] for item in arguments])))
     results = tuple([place[id(item)] for item in rates]), tuple([place[id(item)] for item in readings])
     plan = planned(tuple(form), *results, tuple(variables))
     values = np.array([0.0, *constants])[plan.constants]

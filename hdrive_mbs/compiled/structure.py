@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Step:
     """One operation: its arguments are numbers of earlier steps."""
 

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
 
 from hdrive_mbs.components.component import Component, Flange
 from hdrive_mbs.errors import ParameterError
@@ -18,7 +22,11 @@ from hdrive_mbs.quantities import option, parameter
 from hdrive_mbs.shafts.beam import Beam
 from hdrive_mbs.shafts.section_geometry import CircularSection
 
+FloatArray = npt.NDArray[np.float64]
+
 SPINS = (5, 11)
+KEPT = 256
+"""Sections whose ends and matrices are kept: a search builds most of them again and again."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,14 +80,8 @@ class ShaftSection(Component):
             shear_area=section.shear_area(self.youngs_modulus, self.shear_modulus) if self.shear else None,
         )
 
-    def _end_mass(self) -> RigidMass:
-        polar = self.beam(self.length / self.elements).end_polar_inertia()
-        return RigidMass(0.0, (0.0, 0.0, 0.0), ((0.0,) * 3, (0.0,) * 3, (0.0, 0.0, polar)))
-
     def flanges(self) -> tuple[Flange, ...]:
-        heavy = self.density > 0.0
-        end = Flange(name="a", lateral=True, mass=self._end_mass(), free=heavy)
-        return (end, replace(end, name="b", axial=self.length))
+        return _ends(self)
 
     def relations(self) -> tuple[dict[str, float], ...]:
         return ({"a": 1.0, "b": -1.0},)
@@ -89,7 +91,7 @@ class ShaftSection(Component):
         if first.held and last.held:
             raise ParameterError(f"{name!r}: both ends are held by the ground, so the section does nothing; remove it.")
         inner, start = first if not first.held else last, first.position if not first.held else last.position - self.length
-        end = self._end_mass()
+        end = _end_mass(self)
         stations = [first]
         for k in range(1, count):
             position = start + self.length * k / count
@@ -100,9 +102,7 @@ class ShaftSection(Component):
 
     def _add_element(self, name: str, draft: Draft, a: Station, b: Station) -> None:
         beam = self.beam(self.length / self.elements)
-        stiffness, bending, mass = beam.stiffness(), beam.bending_stiffness(), beam.mass(rotary_inertia=self.rotary_inertia)
-        stiffness[SPINS, :] = 0.0
-        stiffness[:, SPINS] = 0.0
+        stiffness, bending, mass = _matrices(beam, self.rotary_inertia)
         damping = self.damping * stiffness + self.rotating_damping * bending
         draft.add_matrix(f"{name}.beam", (a, b), stiffness=stiffness, damping=damping, mass=mass)
         draft.add_shaft(ShaftPiece(name, (a, b), beam.length, bending))
@@ -119,3 +119,25 @@ class ShaftSection(Component):
             return torsion * twist + damper * rate
 
         draft.add_connection(name, factors, torque, bodies={"a": a.node, "b": b.node})
+
+
+def _end_mass(section: ShaftSection) -> RigidMass:
+    polar = section.beam(section.length / section.elements).end_polar_inertia()
+    return RigidMass(0.0, (0.0, 0.0, 0.0), ((0.0,) * 3, (0.0,) * 3, (0.0, 0.0, polar)))
+
+
+@lru_cache(maxsize=KEPT)
+def _ends(section: ShaftSection) -> tuple[Flange, ...]:
+    end = Flange(name="a", lateral=True, mass=_end_mass(section), free=section.density > 0.0)
+    return (end, replace(end, name="b", axial=section.length))
+
+
+@lru_cache(maxsize=KEPT)
+def _matrices(beam: Beam, rotary_inertia: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Stiffness without torsion, that of bending alone, and mass of a beam; not to be changed."""
+    stiffness, bending, mass = beam.stiffness(), beam.bending_stiffness(), beam.mass(rotary_inertia=rotary_inertia)
+    stiffness[SPINS, :] = 0.0
+    stiffness[:, SPINS] = 0.0
+    for matrix in (stiffness, bending, mass):
+        matrix.setflags(write=False)
+    return stiffness, bending, mass

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+import gc
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 
 from hdrive_mbs.compiled.equilibrium import equilibria
@@ -69,10 +71,11 @@ class Lines:
     def at(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[list[Start | None]]:
         """For each trial the line at each point; None where values do not go together."""
         found: list[list[Start | None]] = [[None] * len(points) for _ in self._trials]
-        for family in self._families:
-            for some in self._apart(family, hypothesis, points):
-                for k, starts in self._family(some, hypothesis, points).items():
-                    found[k] = starts
+        with _collector_at_rest():
+            for family in self._families:
+                for some in self._apart(family, hypothesis, points):
+                    for k, starts in self._family(some, hypothesis, points).items():
+                        found[k] = starts
         return found
 
     def _apart(self, family: list[int], hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[list[int]]:
@@ -123,6 +126,18 @@ class Lines:
     def _own(self, k: int, hypothesis: Hypothesis, point: FloatArray) -> CompiledLine | None:
         network = _network(hypothesis, self._trials[k].scene, point)
         return None if network is None else _compiled(network, self._trials[k])
+
+
+@contextmanager
+def _collector_at_rest() -> Iterator[None]:
+    """No search for garbage meanwhile: recording makes many small objects that need none, and a fifth of its time went there."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
 
 
 def _resting(lines: Sequence[CompiledLine | None]) -> list[dict[str, float]]:

@@ -193,6 +193,8 @@ def as_node(value: Any) -> Expression:
     """The value as a node.  Raises TraceError for anything but a number or an expression."""
     if isinstance(value, Expression):
         return value
+    if type(value) is float:
+        return Expression("constant", (), value)
     if isinstance(value, (bool, int, float, np.number, np.bool_)):
         return constant(float(value))
     if isinstance(value, np.ndarray) and value.ndim == 0:
@@ -207,10 +209,11 @@ def is_constant(expression: Expression, value: float | None = None) -> bool:
 
 def make(operation: str, *arguments: Expression) -> Expression:
     """A node of an operation; a constant when all arguments are."""
-    if all(item.operation == "constant" for item in arguments):
-        with np.errstate(all="ignore"):
-            return constant(float(NUMERIC[operation](*(np.float64(item.data) for item in arguments))))
-    return Expression(operation, arguments)
+    for item in arguments:
+        if item.operation != "constant":
+            return Expression(operation, arguments)
+    with np.errstate(all="ignore"):
+        return constant(float(NUMERIC[operation](*(np.float64(item.data) for item in arguments))))
 
 
 LOGICAL = frozenset(("lt", "le", "eq", "and", "or", "not"))

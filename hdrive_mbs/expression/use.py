@@ -37,15 +37,17 @@ def in_order(*expressions: Expression) -> list[Expression]:
     """All nodes, each once, arguments before what uses them (no recursion: records may be deep)."""
     ordered: list[Expression] = []
     seen: set[int] = set()
-    stack = [(expression, False) for expression in reversed(expressions)]
+    stack: list[Expression | None] = list(reversed(expressions))  # None: the arguments of the node below it are done
     while stack:
-        node, done = stack.pop()
-        if done:
-            ordered.append(node)
+        node = stack.pop()
+        if node is None:
+            ordered.append(stack.pop())  # type: ignore[arg-type]
         elif id(node) not in seen:
             seen.add(id(node))
-            stack.append((node, True))
-            stack.extend((item, False) for item in reversed(node.arguments))
+            if node.arguments:
+                stack += (node, None, *reversed(node.arguments))
+            else:
+                ordered.append(node)
     return ordered
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +13,7 @@ from hdrive_mbs.expression import TraceError, Value, derivative, evaluate, recor
 from hdrive_mbs.network.coupling import Coupling
 from hdrive_mbs.network.elements import AppliedTorque, Claim, Connection
 from hdrive_mbs.network.moment import Moment, recording_moment
-from hdrive_mbs.network.network import Network
+from hdrive_mbs.network.network import Network, random_values
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -32,11 +33,20 @@ def check_claims(network: Network) -> None:
     claims = [claim for element in elements for claim in element.claims()]
     if not claims:
         return
-    moment = network.random_moment(np.random.default_rng(SEED), POINTS)
+    moment = network.moment_of(_values(1 + 2 * len(network.bodies) + len(network.states)))
     rates = {equation.state: equation.rate for equation in network.state_equations()}
     with np.errstate(all="ignore"):
         for claim in claims:
             _check(claim, moment, rates)
+
+
+@lru_cache(maxsize=16)
+def _values(rows: int) -> tuple[FloatArray, ...]:
+    """The same for all networks of one size; not to be changed."""
+    found = tuple(random_values(np.random.default_rng(SEED), POINTS, rows))
+    for values in found:
+        values.setflags(write=False)
+    return found
 
 
 def _check(claim: Claim, moment: Moment, rates: Mapping[str, Callable[[Moment], Value]]) -> None:

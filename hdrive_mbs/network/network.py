@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -226,18 +226,28 @@ class Network:
 
     def random_moment(self, rng: np.random.Generator, count: int) -> Moment:
         """Moments of all magnitudes (1e-6 .. 1e3, both signs, and zero), for checks of laws."""
+        return self.moment_of(random_values(rng, count, 1 + 2 * len(self.bodies) + len(self.states)))
 
-        def draw() -> Value:
-            values = rng.choice((-1.0, 1.0), count) * 10.0 ** rng.uniform(-6.0, 3.0, count)
-            values[0] = 0.0
-            return values
-
+    def moment_of(self, values: Sequence[npt.NDArray[np.float64]]) -> Moment:
+        """Moments with these values in a row: the time, whose sign does not count, all angles, all speeds, all states."""
+        names, n = [body.name for body in self.bodies], len(self.bodies)
+        states = [state.name for state in self.states]
         return self.moment(
-            np.abs(draw()),
-            {body.name: draw() for body in self.bodies},
-            {body.name: draw() for body in self.bodies},
-            {state.name: draw() for state in self.states},
+            np.abs(values[0]),
+            dict(zip(names, values[1 : 1 + n], strict=True)),
+            dict(zip(names, values[1 + n : 1 + 2 * n], strict=True)),
+            dict(zip(states, values[1 + 2 * n :], strict=True)),
         )
+
+
+def random_values(rng: np.random.Generator, count: int, rows: int) -> list[npt.NDArray[np.float64]]:
+    """Rows of numbers of all magnitudes (1e-6 .. 1e3) and both signs, after a zero."""
+    made = []
+    for _ in range(rows):
+        values = rng.choice((-1.0, 1.0), count) * 10.0 ** rng.uniform(-6.0, 3.0, count)
+        values[0] = 0.0
+        made.append(values)
+    return made
 
 
 def _touches(element: Element, lateral: set[str]) -> bool:
