@@ -518,4 +518,5 @@ def bench() -> RotorBench:
             for name in (*LATERAL, *TORSION)
         },
         together=GROUPS,
+        searched=("bump", "run_up"),
     )

@@ -60,6 +60,8 @@ class Bench:
     measured : columns to compare;  inputs : columns that drive the scene
     angles, speeds : of bodies at the start of every record; 0 if not given
     together : parameters that are suspected together, by a name for the group; every other one is suspected alone
+    searched : names of records on which causes are searched, all if not given; the best are fitted to all records in the end.
+        Leave out a long record that shows little that the others do not
 
     Subclasses override ``trials`` (and ``planned``) where a record needs more than its columns put into the scene.
     """
@@ -71,6 +73,7 @@ class Bench:
     angles: Mapping[str, float] = field(default_factory=dict)
     speeds: Mapping[str, float] = field(default_factory=dict)
     together: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    searched: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         known = self.scene.parameters()

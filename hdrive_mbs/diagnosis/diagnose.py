@@ -33,7 +33,7 @@ from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.traces import traces
 from hdrive_mbs.diagnosis.unknowns import Factor
-from hdrive_mbs.diagnosis.verdict import NONE, UNKNOWN, Claim, judge
+from hdrive_mbs.diagnosis.verdict import NONE, UNKNOWN, Claim, judge, left
 from hdrive_mbs.diagnosis.verify import engine_difference
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import HdriveError, ParameterError
@@ -82,13 +82,15 @@ def diagnose(
     chosen = _records(records)
     known = bench if isinstance(bench, Bench) else assumed_bench(bench, chosen)
     check_records(known, chosen)
-    trials = [trial for record in chosen for trial in known.trials(record)]
+    trials_of = {record.name: known.trials(record) for record in chosen}
+    trials = [trial for found in trials_of.values() for trial in found]
+    searched = [trial for name in known.searched for trial in trials_of.get(name, ())] or trials
     if not trials:
         raise ParameterError("A diagnosis needs at least one record.")
     factors = factors_of(known)
     tried = all_candidates(trials[0].scene, candidates)
     step = suitable_step(trials, factors) if step is None else step
-    coarse, fine = Simulator(trials, step, EVERY), Simulator(trials, step)
+    coarse, fine = Simulator(searched, step, EVERY), Simulator(trials, step)
     check_trials(coarse, factors)
     check_candidates(tried, coarse, factors)
     journal = None
@@ -125,7 +127,7 @@ def factors_of(bench: Bench) -> tuple[Factor, ...]:
 def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, started: float, pictures: bool) -> Diagnosis:
     """The answer that the fits of a case give."""
     pair = evidence.pairs[0] if evidence.pairs else None
-    claim = judge(evidence.null.chi_held, evidence.singles, pair)
+    claim = judge(left(evidence.null), evidence.singles, pair)
     best = evidence.null if claim.fit is None or claim.kind == "unknown" else claim.fit.fitted
     improved = best.hypothesis.scene(bench.scene, best.z)
     notes: list[str] = []

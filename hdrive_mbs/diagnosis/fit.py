@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.diagnosis.bounded import bounded_step
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.simulator import Simulator, chi_square
 from hdrive_mbs.errors import AnalysisError
@@ -26,6 +27,8 @@ the strongly determined ones are as narrow as they are, and then a part of the s
 power below 1 the stretches that fit worst count for more than the misfit says."""
 DAMPED = ((1.0, 1e-2), (1.0, 0.3), (1.0, 5.0), (0.5, 3e-2), (0.0, 0.1))
 """Power of the weights, and times the damping at hand: tried besides."""
+AS_PROMISED = 0.6
+"""Share of what the whole undamped step promises at which it is taken without trying others."""
 CHANGE, CAUTIOUS = 5.0, 0.15
 """Change of the residuals (root of their sum of squares) that a difference makes, and share of the longest step it may take."""
 
@@ -138,8 +141,13 @@ def fit(
             systems[power] = weighted.T @ columns, weighted.T @ residuals[mask] + precisions * z
         curvature = systems[1.0][0]
         points = _proposals(hypothesis, z, precisions, systems, damping)
-        found = simulator.residuals(hypothesis, [point for point, _ in points])
-        costs = [np.inf if item is None else cost_of(item, point) for item, (point, _) in zip(found, points, strict=True)]
+        found, costs = [], []
+        for some in (points[:1], points[1:]):
+            runs = simulator.residuals(hypothesis, [point for point, _ in some])
+            found += runs
+            costs += [np.inf if item is None else cost_of(item, point) for item, (point, _) in zip(runs, some, strict=True)]
+            if cost - costs[0] > AS_PROMISED * _promised(points[0][0] - z, *systems[1.0], precisions):
+                break
         done += 1
         best = int(np.argmin(costs))
         chosen = found[best]
@@ -173,14 +181,12 @@ def fit(
     )
 
 
+def _promised(move: FloatArray, curvature: FloatArray, slope: FloatArray, precisions: FloatArray) -> float:
+    """What the quadratic model says that a step lowers the cost by."""
+    return -float(slope @ move) - 0.5 * float(move @ (curvature + np.diag(precisions)) @ move)
+
+
 Systems = Mapping[float, tuple[FloatArray, FloatArray]]
-
-
-def _scaled(curvature: FloatArray, precisions: FloatArray, damping: float) -> tuple[FloatArray, FloatArray]:
-    """The damped normal matrix on the scale of its own diagonal, and this scale."""
-    normal = curvature + np.diag(precisions)
-    scale = np.sqrt(np.where(np.diag(normal) > 0.0, np.diag(normal), 1.0))
-    return normal / np.outer(scale, scale) + (damping + 1e-12) * np.eye(len(scale)), scale
 
 
 def _proposals(
@@ -191,8 +197,7 @@ def _proposals(
 
     def step(power: float, extra: float) -> FloatArray:
         curvature, slope = systems[power]
-        matrix, scale = _scaled(curvature, precisions, extra)
-        return -solved(matrix, slope / scale) / scale
+        return bounded_step(hypothesis, z, curvature + np.diag(precisions), slope, extra)
 
     points = []
     for power, parts in SHORTER:
@@ -201,13 +206,3 @@ def _proposals(
     for power, factor in DAMPED:
         points.append((hypothesis.clipped(z + np.clip(step(power, factor * damping), -reaches, reaches)), factor))
     return points
-
-
-def solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Least-norm solution; zero where the numbers are not finite."""
-    if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
-        return np.zeros_like(right)
-    try:
-        return np.asarray(np.linalg.lstsq(matrix, right, rcond=1e-14)[0])
-    except np.linalg.LinAlgError:
-        return np.zeros_like(right)

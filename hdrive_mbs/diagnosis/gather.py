@@ -13,6 +13,7 @@ from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.search import (
     FINE,
     HOPS,
+    NEAR,
     Depth,
     Found,
     Report,
@@ -39,8 +40,6 @@ EXACT = 1e-6
 """Relative change of the cost that ends these last fits."""
 JOINED = 5
 """Other single causes that the best one is joined with."""
-NEAR = 3.0
-"""Mean square up to which the nominal model is fitted as sharply as the causes: its evidence is then what they are held against."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,11 +97,15 @@ def gather(
             best = min(together, key=lambda item: item.fitted.cost)
             other = swapped(team, coarse, best, first.suspect.label, single.labels[: SINGLES + 1])
             double = (min((best, *other), key=lambda item: item.fitted.cost),)
-    share = EXACT if null.chi_fit < NEAR else FINE
-    tasks = [Task(null.hypothesis, np.zeros_like(null.z), None, 0, 1.0), Task(null.hypothesis, null.z, None, LONG, share, hops=HOPS)]
+    near = null.chi_fit < NEAR
+    share = EXACT if near else FINE
+    tasks = [
+        Task(null.hypothesis, np.zeros_like(null.z), None, 0, 1.0),
+        Task(null.hypothesis, null.z, None, LONG, share, hops=HOPS if near else 0),
+    ]
     leader = min((*serious, *double), key=lambda item: item.fitted.cost, default=None)
     for item in (*serious, *double):
-        far = item is leader or null.chi_fit < NEAR
+        far = item is leader or near
         tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, LONG if far else LAST, EXACT, hops=HOPS if far else 0))
     fits = team.map(run_task, fine, tasks, partial(said, "all samples"))
     pairs = list(zip((*serious, *double), fits[2:], strict=True))

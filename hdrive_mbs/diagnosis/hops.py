@@ -11,7 +11,8 @@ import dataclasses
 
 import numpy as np
 
-from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian, solved
+from hdrive_mbs.diagnosis.bounded import bounded_step
+from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian
 from hdrive_mbs.diagnosis.simulator import Simulator
 
 PARTS = (1.0, 0.4)
@@ -57,8 +58,6 @@ def _bowl(simulator: Simulator, fitted: Fitted) -> np.ndarray[tuple[int], np.dty
         curvature = weighted.T @ columns
         metric = curvature + np.diag(hypothesis.curvatures(z))
         normal = curvature + np.diag(hypothesis.precisions)
-        scale = np.sqrt(np.maximum(np.diag(normal), 1e-300))
-        slope = weighted.T @ part + hypothesis.precisions * z
-        move = -solved(normal / np.outer(scale, scale), slope / scale) / scale
+        move = bounded_step(hypothesis, z, normal, weighted.T @ part + hypothesis.precisions * z)
     reaches = hypothesis.reaches(z)
     return np.asarray(np.clip(move, -reaches, reaches))

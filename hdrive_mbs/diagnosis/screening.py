@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.diagnosis.fit import Fitted, solved
+from hdrive_mbs.diagnosis.bounded import bounded_step
+from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis, start_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 
@@ -115,7 +116,8 @@ class Screen:
         normal[:first, first:], normal[first:, :first], normal[first:, first:] = cross, cross.T, weighted.T @ columns
         normal += np.diag(hypothesis.precisions)
         slope += hypothesis.precisions * start
-        move = bounded_step(normal, slope, hypothesis, start)
+        sizes = (np.arange(len(start)) >= hypothesis.nominal_size) & (hypothesis.precisions == 0.0)
+        move = bounded_step(hypothesis, start, normal, slope, held=sizes)
         return [hypothesis.clipped(start + shrink * move) for shrink in SHRINKS]
 
 
@@ -131,22 +133,3 @@ def _choices(added: Added) -> tuple[object, ...]:
     searched = {path for unknown in added.unknowns for path in unknown.values([0.0] * unknown.size)}
     fields = ((name, value) for name, value, _ in added.effect.fields() if f"{added.name}.{name}" not in searched)
     return type(added.effect), added.at, added.name, *(f"{name}={value!r}" for name, value in fields)
-
-
-def bounded_step(normal: FloatArray, slope: FloatArray, hypothesis: Hypothesis, start: FloatArray) -> FloatArray:
-    """The Gauss-Newton step with coordinates that would leave what is allowed held at their start, one after the other."""
-    free = np.ones(len(start), dtype=bool)
-    move = np.zeros(len(start))
-    for _ in range(len(start)):
-        at = np.flatnonzero(free)
-        system = normal[np.ix_(at, at)]
-        scale = np.sqrt(np.maximum(np.diag(system), 1e-300))
-        scaled = system / np.outer(scale, scale) + 1e-9 * np.eye(len(at))
-        move = np.zeros(len(start))
-        move[at] = -solved(scaled, slope[at] / scale) / scale
-        limited = np.array([k >= hypothesis.nominal_size and move[k] < 0.0 for k in range(len(start))])
-        wrong = limited & free & (hypothesis.clipped(start + move) > start + move) & (hypothesis.precisions == 0.0)
-        if not wrong.any():
-            return move
-        free &= ~wrong
-    return move

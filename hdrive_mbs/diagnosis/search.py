@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.evidence import log_evidence
-from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian
+from hdrive_mbs.diagnosis.fit import Fitted, fit
+from hdrive_mbs.diagnosis.ground import Ground, as_known, reset
 from hdrive_mbs.diagnosis.hops import settled
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.screening import Look, Screen
@@ -29,8 +30,14 @@ COARSE, FINE = 3e-3, 1e-4
 """Relative change of the cost that ends the fit of the nominal model, whose misfit may have no explanation in it, and of others."""
 STEPS, ELSEWHERE, CONVERGED = 3, 8, 25
 """Joint steps before the last choice, of the best law at other places, and steps that a fit to the end may take."""
-HOPS = 3
-"""Hops out of hollows for the nominal model, which everything else is held against."""
+HOPS, NEAR = 3, 3.0
+"""Hops out of hollows for the nominal model, which everything else is held against, and the mean square up to which they help
+and up to which it is worth a fit as sharp as that of the causes: farther away they lead nowhere."""
+FAR = 1.3
+"""Mean square of a fitted model above which everything is looked at from the data sheet's values too: a cause that is
+missing has bent them, and from there it may not show."""
+AGAIN = 2
+"""Of the best laws that are fitted again from the data sheet's values."""
 PARAMETER = "parameter"
 """Law of a suspect that is no effect."""
 SHARE = 0.08
@@ -42,11 +49,13 @@ class Depth:
     """How far a search goes.
 
     brief : labels that are looked at closer, at least and at most;  laws : of each that get joint steps (1: no closer look)
+    picked : laws that get joint steps at most, from each ground
     kept : laws that are fitted on, at least and at most;  serious : how many of them to the end, besides all laws of the best label
     """
 
     brief: tuple[int, int] = (4, 10)
     laws: int = 3
+    picked: int = 10
     kept: tuple[int, int] = (3, 6)
     serious: int = 2
 
@@ -131,7 +140,8 @@ def fit_nominal(simulator: Simulator, factors: Sequence[Factor]) -> Fitted:
     residuals = simulator.residuals(nominal, [np.zeros(nominal.size)])[0]
     if residuals is None:
         raise AnalysisError("The nominal scene cannot be simulated through the records; look at its start values and inputs.")
-    return settled(simulator, fit(simulator, nominal, np.zeros(nominal.size), steps=40, share=COARSE, begin=residuals), HOPS)
+    fitted = fit(simulator, nominal, np.zeros(nominal.size), steps=40, share=COARSE, begin=residuals)
+    return settled(simulator, fitted, HOPS) if fitted.chi_fit < NEAR else fitted
 
 
 def search(
@@ -152,22 +162,23 @@ def search(
     """
     said = report or (lambda stage, done, total: None)
     how = depth or Depth()
-    columns = jacobian(simulator, base.hypothesis, base.z, base.residuals)
-    screen = Screen(simulator, base, columns)
     everything = suspects(base.hypothesis, groups, tried)
-    simple = _simplest(everything)
-    looks = _looked(team, screen, simple, [item.first for item in simple], partial(said, "looking at candidates"))
-    costs = [look.cost for _, look in looks]
-    chosen = [suspect.label for suspect, _ in looks[: _worth(base.cost, costs, how.brief)]]
-    closer = [pair for pair in looks if pair[0].label in chosen]
-    if how.laws > 1:
-        laws = [suspect for suspect in everything if suspect.label in chosen]
-        closer = _looked(team, screen, laws, [item.all for item in laws], partial(said, "looking closer"))
-    picked = _picked(closer, laws=how.laws)
+    grounds = [Ground(simulator, base), *([Ground(simulator, reset(simulator, base))] if base.chi_fit > FAR else [])]
+    looks: dict[str, float] = {}
+    picked: list[tuple[Suspect, Look]] = []
+    for ground in grounds:
+        simple = _simplest(everything)
+        first = _looked(team, ground.screen, simple, [item.first for item in simple], partial(said, "looking at candidates"))
+        looks |= {name: min(cost, looks.get(name, cost)) for name, cost in _named(first).items()}
+        chosen = [suspect.label for suspect, _ in first[: _worth(ground.plain, [look.cost for _, look in first], how.brief)]]
+        closer = [pair for pair in first if pair[0].label in chosen]
+        if how.laws > 1:
+            laws = [suspect for suspect in everything if suspect.label in chosen]
+            closer = _looked(team, ground.screen, laws, [item.all for item in laws], partial(said, "looking closer"))
+        picked += _picked(closer, laws=how.laws)[: how.picked]
     tasks = [Task(look.hypothesis, look.z, look.residuals, STEPS, FINE) for _, look in picked]
     fits = team.map(run_task, simulator, tasks, partial(said, "a few joint steps"))
-    brief = [Found(suspect, fitted) for (suspect, _), fitted in zip(picked, fits, strict=True)]
-    brief.sort(key=lambda item: item.fitted.cost)
+    brief = _cheapest([Found(suspect, fitted) for (suspect, _), fitted in zip(picked, fits, strict=True)])
     kept = brief[: _worth(base.cost, [item.fitted.cost for item in brief], how.kept)]
     leading = kept[0].suspect.label if kept else None
     thorough = [k < how.serious or item.suspect.label == leading for k, item in enumerate(kept)]
@@ -175,14 +186,36 @@ def search(
     fits = team.map(run_task, simulator, tasks, partial(said, "fitting the best"))
     found = [Found(item.suspect, fitted) for item, fitted in zip(kept, fits, strict=True)]
     if how.laws > 1:
-        moved = _elsewhere(min(found, key=lambda item: item.fitted.cost, default=None), base, everything)
+        moved = _elsewhere(min(found, key=lambda item: item.fitted.cost, default=None), base, everything) + _restarts(found)
         fits = team.map(run_task, simulator, [task for _, task in moved], partial(said, "trying the best elsewhere"))
         found += [Found(suspect, fitted) for (suspect, _), fitted in zip(moved, fits, strict=True)]
-        found.sort(key=lambda item: item.fitted.cost)
+        found = _cheapest(found)
         if found and not found[0].fitted.converged:
             found[0] = Found(found[0].suspect, run_task(simulator, further(found[0].fitted)))
     final = sorted((scored(item, base) for item in found), key=lambda item: -item.log_odds)
-    return Search(base=base, found=tuple(final), looks={f"{suspect.law} at {suspect.label[1]}": look.cost for suspect, look in looks})
+    return Search(base=base, found=tuple(final), looks=dict(sorted(looks.items(), key=lambda item: item[1])))
+
+
+def _named(looks: Sequence[tuple[Suspect, Look]]) -> dict[str, float]:
+    return {f"{suspect.law} at {suspect.label[1]}": look.cost for suspect, look in looks}
+
+
+def _cheapest(found: Sequence[Found]) -> list[Found]:
+    """The best fit of each law at each place, best first."""
+    best: dict[tuple[Label, str], Found] = {}
+    for item in sorted(found, key=lambda item: item.fitted.cost):
+        best.setdefault((item.suspect.label, item.suspect.law), item)
+    return list(best.values())
+
+
+def _restarts(found: Sequence[Found]) -> list[tuple[Suspect, Task]]:
+    """The best laws again, with what was found for them and the data sheet's values for all else, where they leave something."""
+    tasks = []
+    for item in sorted(found, key=lambda item: item.fitted.cost)[:AGAIN]:
+        if item.fitted.chi_fit > FAR:
+            hypothesis, z = item.fitted.hypothesis.rescaled(item.fitted.z)
+            tasks.append((item.suspect, Task(hypothesis, as_known(hypothesis, z), None, CONVERGED, FINE)))
+    return tasks
 
 
 def _elsewhere(best: Found | None, base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:

@@ -20,6 +20,8 @@ BEYOND = 4.0
 """Times the end of a typical range that a fitted strength may go."""
 STRAIGHT, FARTHEST = 0.4, 19.0
 """Of its nominal value: where a parameter stops being linear in its coordinate; and how far it may grow above it."""
+TOLERANCE = 5.0
+"""Prior standard deviations that a parameter may be off unless it is suspected: what needs more is a cause of its own."""
 SMALLEST = 1e-3
 """Of its scale: a strength below it is zero for the prior."""
 
@@ -95,6 +97,8 @@ class Factor(Unknown):
 
     def clipped(self, z: Sequence[float]) -> tuple[float, ...]:
         most = FARTHEST / (self.sigma * self.wide)
+        if self.wide == 1.0:
+            most = min(most, TOLERANCE)
         return (min(max(z[0], -most), most),)
 
     def step(self, z: Sequence[float]) -> float:

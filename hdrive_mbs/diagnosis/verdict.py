@@ -1,8 +1,8 @@
 """From fits to a verdict: what is claimed, how sure it is, and what cannot be told apart.
 
 The rules look at three figures of each fit on all records: the log odds (evidence over that of the refitted nominal
-model), the misfit on samples that no fit saw, and how much of the nominal model's misfit is gone.  The constants were
-chosen on simulated cases of our own making (benchmarks/withheld), not on those that are scored.
+model), the misfit on samples that it saw and on those that no fit saw, and how much of the nominal model's misfit is
+gone.  The constants were chosen on simulated cases of our own making (benchmarks/withheld), not on those that are scored.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.search import Found, Label
 
 ODDS, PARAMETER_ODDS = 8.0, 4.5
@@ -18,17 +19,21 @@ ODDS, PARAMETER_ODDS = 8.0, 4.5
 nibble at what every model leaves, and few parameters."""
 CLEAN = 1.15
 """Mean square of the refitted nominal model up to which its misfit counts as noise."""
-EXPLAINED = 0.6
+EXPLAINED = 0.5
 """Share of the logarithm of the nominal misfit that a claim has to take away; with less the cause is unknown."""
 FITS = 1.6
 """Mean square below which a claim stands whatever its share."""
 TIED = 5.0
 """Difference of log odds within which two labels cannot be told apart."""
-SECOND, MORE = 25.0, 0.5
-"""Log odds that a second cause needs over the first alone, and share of the logarithm of what the first leaves that it has
-to take away: laws that are nearly right always leave something that a second cause can nibble at."""
+SECOND, MORE, COMPARABLE = 25.0, 0.5, 0.1
+"""What a second cause needs besides the first: log odds over it, and either the share of the logarithm of what the first
+leaves that it has to take away, or log odds that are this share of the first one's.  Laws that are nearly right always
+leave something that a second cause can nibble at."""
 TEMPERATURE = 12.0
 """By which differences of log odds are divided before they become probabilities: models are never quite right."""
+OTHER_AT_FIT, OTHER_PER_LOG, OTHER_MOST, OTHER_BEFORE = -3.5, 0.7, 0.0, 2.0
+"""Logarithm of the odds of "none of these" against the best: where the best fits, how it grows with the logarithm of the
+misfit that the best leaves, up to where, and where the best does not explain the misfit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +57,7 @@ UNKNOWN: Label = ("unknown", "")
 def judge(null_misfit: float, found: Sequence[Found], pair: Found | None) -> Claim:
     """The verdict.
 
-    null_misfit : mean square of the refitted nominal model on samples that no fit saw
+    null_misfit : what the refitted nominal model leaves, see ``left``
     found : single causes on all samples, best first;  pair : the best pair, its log odds those over the nominal model
     """
     singles = [item for item in found if item.log_odds > (PARAMETER_ODDS if item.suspect.label[0] == "parameter" else ODDS)]
@@ -61,10 +66,10 @@ def judge(null_misfit: float, found: Sequence[Found], pair: Found | None) -> Cla
         kind = "none" if null_misfit <= CLEAN else "unknown"
         return Claim(kind, None, (), _probabilities(found, null_misfit, kind))
     chosen = best
-    if pair is not None and pair.log_odds - best.log_odds > SECOND and _much_better(best.fitted.chi_held, pair.fitted.chi_held):
+    if pair is not None and _needed(best, pair):
         chosen = pair
     probabilities = _probabilities(found, null_misfit, "effect")
-    if not explains(null_misfit, chosen.fitted.chi_held):
+    if not explains(null_misfit, left(chosen.fitted)):
         return Claim("unknown", chosen, (), probabilities)
     close = [item.suspect.label for item in singles if chosen is best and item is not best and best.log_odds - item.log_odds < TIED]
     tied = tuple(dict.fromkeys(label for label in close if label != best.suspect.label))
@@ -80,9 +85,18 @@ def explains(before: float, after: float) -> bool:
     return 1.0 - math.log(after) / math.log(before) >= EXPLAINED
 
 
-def _much_better(before: float, after: float) -> bool:
-    """Whether a second cause takes away its share of what the first leaves."""
-    return before > 1.0 and math.log(max(after, 1.0)) < (1.0 - MORE) * math.log(before)
+def left(fitted: Fitted) -> float:
+    """What a fit leaves: geometric mean of the mean squares of the samples that it saw and of those that it did not."""
+    return math.sqrt(fitted.chi_fit * fitted.chi_held)
+
+
+def _needed(first: Found, pair: Found) -> bool:
+    """Whether a second cause is more than a patch on the law of the first."""
+    gain = pair.log_odds - first.log_odds
+    before, after = left(first.fitted), left(pair.fitted)
+    if gain <= SECOND or before <= 1.0 or after >= before:
+        return False
+    return math.log(max(after, 1.0)) < (1.0 - MORE) * math.log(before) or gain > COMPARABLE * first.log_odds
 
 
 def kind_of(found: Found) -> str:
@@ -101,8 +115,12 @@ def _probabilities(found: Sequence[Found], null_misfit: float, kind: str) -> dic
         scores[label] = max(scores.get(label, -math.inf), item.log_odds / TEMPERATURE)
     if kind == "unknown" or null_misfit > CLEAN:
         best = max(found, key=lambda item: item.log_odds, default=None)
-        left = null_misfit if best is None else best.fitted.chi_held
-        scores[UNKNOWN] = max(scores.values()) + (2.0 if best is None or not explains(null_misfit, left) else -3.0)
+        after = null_misfit if best is None else left(best.fitted)
+        if best is None or not explains(null_misfit, after):
+            odds = OTHER_BEFORE
+        else:
+            odds = min(OTHER_AT_FIT + OTHER_PER_LOG * math.log(max(after, 1.0)), OTHER_MOST)
+        scores[UNKNOWN] = max(scores.values()) + odds
     top = max(scores.values())
     weights = {label: math.exp(score - top) for label, score in scores.items()}
     total = sum(weights.values())
