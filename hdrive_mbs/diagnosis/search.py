@@ -36,6 +36,8 @@ and up to which it is worth a fit as sharp as that of the causes: farther away t
 FAR = 1.3
 """Mean square of a fitted model above which everything is looked at from the data sheet's values too: a cause that is
 missing has bent them, and from there it may not show."""
+ENOUGH = 1.1
+"""Mean square that ends the search."""
 AGAIN = 2
 """Of the best laws that are fitted again from the data sheet's values."""
 PARAMETER = "parameter"
@@ -158,46 +160,67 @@ def search(
 
     One simple law stands for each label in the first look.  The best labels are looked at with all laws and starts,
     the best of those get a few joint steps with their own Jacobians, and the best of these are fitted to the end.
+    Where all of them leave something, the same is done from the values of the data sheet.
     What came out best is then tried at all other places where it may sit, from the values found.
     """
-    said = report or (lambda stage, done, total: None)
     how = depth or Depth()
+    work = _Work(team, simulator, report or (lambda stage, done, total: None), how)
     everything = suspects(base.hypothesis, groups, tried)
-    grounds = [Ground(simulator, base), *([Ground(simulator, reset(simulator, base))] if base.chi_fit > FAR else [])]
-    looks: dict[str, float] = {}
-    picked: list[tuple[Suspect, Look]] = []
-    for ground in grounds:
-        simple = _simplest(everything)
-        first = _looked(team, ground.screen, simple, [item.first for item in simple], partial(said, "looking at candidates"))
-        looks |= {name: min(cost, looks.get(name, cost)) for name, cost in _named(first).items()}
-        chosen = [suspect.label for suspect, _ in first[: _worth(ground.plain, [look.cost for _, look in first], how.brief)]]
-        closer = [pair for pair in first if pair[0].label in chosen]
-        if how.laws > 1:
-            laws = [suspect for suspect in everything if suspect.label in chosen]
-            closer = _looked(team, ground.screen, laws, [item.all for item in laws], partial(said, "looking closer"))
-        picked += _picked(closer, laws=how.laws)[: how.picked]
-    tasks = [Task(look.hypothesis, look.z, look.residuals, STEPS, FINE) for _, look in picked]
-    fits = team.map(run_task, simulator, tasks, partial(said, "a few joint steps"))
-    brief = _cheapest([Found(suspect, fitted) for (suspect, _), fitted in zip(picked, fits, strict=True)])
-    kept = brief[: _worth(base.cost, [item.fitted.cost for item in brief], how.kept)]
-    leading = kept[0].suspect.label if kept else None
-    thorough = [k < how.serious or item.suspect.label == leading for k, item in enumerate(kept)]
-    tasks = [further(item.fitted, *((CONVERGED, FINE, 1) if to_end else (STEPS,))) for item, to_end in zip(kept, thorough, strict=True)]
-    fits = team.map(run_task, simulator, tasks, partial(said, "fitting the best"))
-    found = [Found(item.suspect, fitted) for item, fitted in zip(kept, fits, strict=True)]
+    found, looks = work.from_ground(base, base, everything)
+    if base.chi_fit > FAR and not any(item.fitted.chi_fit < ENOUGH for item in found):
+        more, others = work.from_ground(reset(simulator, base), base, everything)
+        found = _cheapest([*found, *more])
+        looks = {name: min(cost, looks.get(name, cost)) for name, cost in (looks | others).items()}
     if how.laws > 1:
-        moved = _elsewhere(min(found, key=lambda item: item.fitted.cost, default=None), base, everything) + _restarts(found)
-        fits = team.map(run_task, simulator, [task for _, task in moved], partial(said, "trying the best elsewhere"))
-        found += [Found(suspect, fitted) for (suspect, _), fitted in zip(moved, fits, strict=True)]
-        found = _cheapest(found)
+        moved = _elsewhere(found[0] if found else None, base, everything) + _restarts(found)
+        found = _cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
         if found and not found[0].fitted.converged:
             found[0] = Found(found[0].suspect, run_task(simulator, further(found[0].fitted)))
     final = sorted((scored(item, base) for item in found), key=lambda item: -item.log_odds)
     return Search(base=base, found=tuple(final), looks=dict(sorted(looks.items(), key=lambda item: item[1])))
 
 
-def _named(looks: Sequence[tuple[Suspect, Look]]) -> dict[str, float]:
-    return {f"{suspect.law} at {suspect.label[1]}": look.cost for suspect, look in looks}
+@dataclass(frozen=True, eq=False)
+class _Work:
+    """Who does it, on what, and how far it goes."""
+
+    team: Team
+    simulator: Simulator
+    said: Report
+    how: Depth
+
+    def from_ground(self, model: Fitted, base: Fitted, everything: Sequence[Suspect]) -> tuple[list[Found], dict[str, float]]:
+        """What is found from a model at some point, best first, and the cost of the first looks."""
+        ground = Ground(self.simulator, model)
+        simple = _simplest(everything)
+        first = self._looked(ground.screen, simple, [item.first for item in simple], "looking at candidates")
+        chosen = [suspect.label for suspect, _ in first[: _worth(ground.plain, [look.cost for _, look in first], self.how.brief)]]
+        closer = [pair for pair in first if pair[0].label in chosen]
+        if self.how.laws > 1:
+            laws = [suspect for suspect in everything if suspect.label in chosen]
+            closer = self._looked(ground.screen, laws, [item.all for item in laws], "looking closer")
+        picked = _picked(closer, laws=self.how.laws)[: self.how.picked]
+        tasks = [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE)) for suspect, look in picked]
+        brief = _cheapest(self.fitted(tasks, "a few joint steps"))
+        kept = brief[: _worth(base.cost, [item.fitted.cost for item in brief], self.how.kept)]
+        leading = kept[0].suspect.label if kept else None
+        thorough = [k < self.how.serious or item.suspect.label == leading for k, item in enumerate(kept)]
+        further_ = [further(item.fitted, *((CONVERGED, FINE, 1) if end else (STEPS,))) for item, end in zip(kept, thorough, strict=True)]
+        found = self.fitted([(item.suspect, task) for item, task in zip(kept, further_, strict=True)], "fitting the best")
+        return _cheapest(found), {f"{suspect.law} at {suspect.label[1]}": look.cost for suspect, look in first}
+
+    def fitted(self, asked: Sequence[tuple[Suspect, Task]], words: str) -> list[Found]:
+        """Suspects with their tasks done."""
+        fits = self.team.map(run_task, self.simulator, [task for _, task in asked], partial(self.said, words))
+        return [Found(suspect, fitted) for (suspect, _), fitted in zip(asked, fits, strict=True)]
+
+    def _looked(
+        self, screen: Screen, asked: Sequence[Suspect], starts: Sequence[tuple[Hypothesis, ...]], words: str
+    ) -> list[tuple[Suspect, Look]]:
+        """Looks at suspects, cheapest misfit first; those that cannot be run are left out."""
+        answers = self.team.map(_look, screen, starts, partial(self.said, words))
+        looks = [(suspect, look) for suspect, look in zip(asked, answers, strict=True) if look is not None]
+        return sorted(looks, key=lambda pair: pair[1].cost)
 
 
 def _cheapest(found: Sequence[Found]) -> list[Found]:
@@ -243,15 +266,6 @@ def _worth(before: float, costs: Sequence[float], limits: tuple[int, int]) -> in
     gains = [before - cost for cost in costs]
     fair = sum(gain > SHARE * gains[0] for gain in gains) if gains and gains[0] > 0.0 else 0
     return min(max(fair, least), most)
-
-
-def _looked(
-    team: Team, screen: Screen, asked: Sequence[Suspect], starts: Sequence[tuple[Hypothesis, ...]], said: Callable[[int, int], None]
-) -> list[tuple[Suspect, Look]]:
-    """Looks at suspects, cheapest misfit first; those that cannot be run are left out."""
-    answers = team.map(_look, screen, starts, said)
-    looks = [(suspect, look) for suspect, look in zip(asked, answers, strict=True) if look is not None]
-    return sorted(looks, key=lambda pair: pair[1].cost)
 
 
 def _look(screen: Screen, hypotheses: tuple[Hypothesis, ...]) -> Look | None:
