@@ -30,7 +30,7 @@ from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 
-LEFT = 1.1
+LEFT = 1.2
 """Mean square left by the best single cause above which a second one is looked for."""
 SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 """Of the search for a second cause."""
@@ -106,7 +106,7 @@ def gather(
     leader = min((*serious, *double), key=lambda item: item.fitted.cost, default=None)
     for item in (*serious, *double):
         far = item is leader or near
-        tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, LONG if far else LAST, EXACT, hops=HOPS if far else 0))
+        tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, LONG if far else LAST, EXACT, hops=HOPS if item is leader else 0))
     fits = team.map(run_task, fine, tasks, partial(said, "all samples"))
     pairs = list(zip((*serious, *double), fits[2:], strict=True))
     final = [scored(Found(item.suspect, fitted), fits[1]) for item, fitted in pairs]

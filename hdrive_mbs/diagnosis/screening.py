@@ -20,8 +20,8 @@ from hdrive_mbs.diagnosis.simulator import Simulator
 
 FloatArray = npt.NDArray[np.float64]
 
-SHRINKS = (1.0, 0.4, 0.1)
-"""Of the linear step, tried side by side."""
+SHRINKS = (0.4, 0.1)
+"""Of the linear step, tried where the whole of it is no gain."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,15 +70,30 @@ class Screen:
                 points.append(moved)
         each = 1 + hypothesis.size - first
         found = self.simulator.residuals(hypothesis, points) if each > 1 else [self.null.residuals] * len(points)
-        tried: list[FloatArray] = []
+        whole, parts = [], []
         for number, origin in enumerate(origins):
             own = found[number * each : (number + 1) * each]
             if own[0] is not None:
-                tried += self._steps(hypothesis, origin, *self._columns(own, steps[first:]))
-        for point, residuals in zip(tried, self.simulator.residuals(hypothesis, tried), strict=True):
-            if residuals is not None:
+                step = self._step(hypothesis, origin, *self._columns(own, steps[first:]))
+                whole.append(hypothesis.clipped(origin + step))
+                parts.append([hypothesis.clipped(origin + shrink * step) for shrink in SHRINKS])
+        worse = []
+        for look, shorter in zip(self._run(hypothesis, whole), parts, strict=True):
+            if look is not None:
+                yield look
+            if look is None or look.cost >= self.null.cost:
+                worse += shorter
+        yield from (look for look in self._run(hypothesis, worse) if look is not None)
+
+    def _run(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[Look | None]:
+        found: list[Look | None] = []
+        for point, residuals in zip(points, self.simulator.residuals(hypothesis, points) if points else [], strict=True):
+            if residuals is None:
+                found.append(None)
+            else:
                 misfit = self.simulator.blocks.cost(residuals[self.simulator.fit])
-                yield Look(hypothesis, point, misfit + hypothesis.prior_cost(point), residuals)
+                found.append(Look(hypothesis, point, misfit + hypothesis.prior_cost(point), residuals))
+        return found
 
     def _columns(self, found: Sequence[FloatArray | None], steps: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Fitted residuals at a start, and the Jacobian's columns of everything that the base has not."""
@@ -104,7 +119,7 @@ class Screen:
                     at += unknown.size
         return z
 
-    def _steps(self, hypothesis: Hypothesis, start: FloatArray, base: FloatArray, columns: FloatArray) -> list[FloatArray]:
+    def _step(self, hypothesis: Hypothesis, start: FloatArray, base: FloatArray, columns: FloatArray) -> FloatArray:
         first, base_loose = self.null.hypothesis.size, self.null.hypothesis.loose
         wide = np.ones(first)
         wide[: hypothesis.nominal_size] = [hypothesis.loose.get(f.name, 1.0) / base_loose.get(f.name, 1.0) for f in hypothesis.factors]
@@ -117,8 +132,7 @@ class Screen:
         normal += np.diag(hypothesis.precisions)
         slope += hypothesis.precisions * start
         sizes = (np.arange(len(start)) >= hypothesis.nominal_size) & (hypothesis.precisions == 0.0)
-        move = bounded_step(hypothesis, start, normal, slope, held=sizes)
-        return [hypothesis.clipped(start + shrink * move) for shrink in SHRINKS]
+        return bounded_step(hypothesis, start, normal, slope, held=sizes)
 
 
 def _alike(hypotheses: Sequence[Hypothesis]) -> list[list[Hypothesis]]:

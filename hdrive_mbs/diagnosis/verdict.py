@@ -29,8 +29,10 @@ SECOND, MORE, COMPARABLE = 25.0, 0.5, 0.1
 """What a second cause needs besides the first: log odds over it, and either the share of the logarithm of what the first
 leaves that it has to take away, or log odds that are this share of the first one's.  Laws that are nearly right always
 leave something that a second cause can nibble at."""
-TEMPERATURE = 12.0
-"""By which differences of log odds are divided before they become probabilities: models are never quite right."""
+TEMPERATURE = 3.0
+"""By which log odds beyond those that a claim needs are divided before they become probabilities: laws are never quite right."""
+PAIR = 20.0
+"""Log odds of two causes that are claimed over the best single one, for their probability: more than they may be is not believed."""
 OTHER_AT_FIT, OTHER_PER_LOG, OTHER_MOST, OTHER_BEFORE = -3.5, 0.7, 0.0, 2.0
 """Logarithm of the odds of "none of these" against the best: where the best fits, how it grows with the logarithm of the
 misfit that the best leaves, up to where, and where the best does not explain the misfit."""
@@ -60,20 +62,25 @@ def judge(null_misfit: float, found: Sequence[Found], pair: Found | None) -> Cla
     null_misfit : what the refitted nominal model leaves, see ``left``
     found : single causes on all samples, best first;  pair : the best pair, its log odds those over the nominal model
     """
-    singles = [item for item in found if item.log_odds > (PARAMETER_ODDS if item.suspect.label[0] == "parameter" else ODDS)]
+    singles = [item for item in found if item.log_odds > _needs(item)]
     best = singles[0] if singles else None
     if best is None:
         kind = "none" if null_misfit <= CLEAN else "unknown"
-        return Claim(kind, None, (), _probabilities(found, null_misfit, kind))
+        return Claim(kind, None, (), _probabilities(found, None, null_misfit, kind))
     chosen = best
     if pair is not None and _needed(best, pair):
         chosen = pair
-    probabilities = _probabilities(found, null_misfit, "effect")
+    probabilities = _probabilities(found, chosen, null_misfit, "effect")
     if not explains(null_misfit, left(chosen.fitted)):
         return Claim("unknown", chosen, (), probabilities)
     close = [item.suspect.label for item in singles if chosen is best and item is not best and best.log_odds - item.log_odds < TIED]
     tied = tuple(dict.fromkeys(label for label in close if label != best.suspect.label))
     return Claim(kind_of(chosen), chosen, tied, probabilities)
+
+
+def _needs(found: Found) -> float:
+    """Log odds that a single cause needs."""
+    return PARAMETER_ODDS if found.suspect.label[0] == "parameter" else ODDS
 
 
 def explains(before: float, after: float) -> bool:
@@ -108,13 +115,17 @@ def kind_of(found: Found) -> str:
     return "sensor" if all(kind == "sensor" for kind in kinds) and not hypothesis.loose else "effect"
 
 
-def _probabilities(found: Sequence[Found], null_misfit: float, kind: str) -> dict[Label, float]:
+def _probabilities(found: Sequence[Found], chosen: Found | None, null_misfit: float, kind: str) -> dict[Label, float]:
+    """Of each label to be a cause.  They add up to 1 but for two causes claimed together, which both get the probability of the pair."""
     scores: dict[Label, float] = {NONE: 0.0}
     for item in found:
         label = item.suspect.label
-        scores[label] = max(scores.get(label, -math.inf), item.log_odds / TEMPERATURE)
+        scores[label] = max(scores.get(label, -math.inf), (item.log_odds - _needs(item)) / TEMPERATURE)
+    both = [item.label for item in chosen.fitted.hypothesis.added] if chosen is not None and chosen not in found else []
+    if both:
+        scores = dict.fromkeys(both[:1], max(scores.values()) + PAIR / TEMPERATURE) | {k: v for k, v in scores.items() if k not in both}
     if kind == "unknown" or null_misfit > CLEAN:
-        best = max(found, key=lambda item: item.log_odds, default=None)
+        best = chosen or max(found, key=lambda item: item.log_odds, default=None)
         after = null_misfit if best is None else left(best.fitted)
         if best is None or not explains(null_misfit, after):
             odds = OTHER_BEFORE
@@ -124,4 +135,7 @@ def _probabilities(found: Sequence[Found], null_misfit: float, kind: str) -> dic
     top = max(scores.values())
     weights = {label: math.exp(score - top) for label, score in scores.items()}
     total = sum(weights.values())
-    return {label: weight / total for label, weight in sorted(weights.items(), key=lambda pair: -pair[1])}
+    chances = {label: weight / total for label, weight in weights.items()}
+    if both:
+        chances |= dict.fromkeys(both[1:], chances[both[0]])
+    return dict(sorted(chances.items(), key=lambda pair: -pair[1]))
