@@ -7,9 +7,14 @@ import numpy as np
 from hdrive_mbs.analysis.time_response import simulate
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.engine.solvers import Trapezoidal
 
 LONGEST = 4.0
 """Stretch of a record that is run on the engine [s]: its beginning."""
+
+FINER, NEWTON = 8.0, 1e-6
+"""The engine's step on rotor lines, as a part of the search's: the trapezoidal rule is of second order where the search is of
+fourth; and its Newton tolerance."""
 
 
 def engine_difference(simulator: Simulator, fitted: Fitted) -> float:
@@ -24,7 +29,9 @@ def engine_difference(simulator: Simulator, fitted: Fitted) -> float:
     own = simulator.columns(fitted.hypothesis, fitted.z)[number]
     samples = min(trial.samples, int(LONGEST / trial.every))
     start = simulator.start_of(number, fitted.hypothesis, fitted.z)
-    response = simulate(scene, (samples - 1) * trial.every, sample_step=trial.every, initial=dict(start) or None)
+    duration = (samples - 1) * trial.every
+    solver = Trapezoidal(step=simulator.step / FINER, newton_tolerance=NEWTON) if scene.network().is_lateral else None
+    response = simulate(scene, duration, sample_step=trial.every, initial=dict(start) or None, solver=solver)
     worst = 0.0
     for column, measured in trial.measured.items():
         if measured.late or column not in own:
