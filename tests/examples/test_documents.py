@@ -10,13 +10,25 @@ from pathlib import Path
 
 import pytest
 
+from tests.patience import PATIENCE
+
 ROOT = Path(__file__).parents[2]
-DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+FOLDERS = ("", "analyses", "tutorials", "gallery", "api")
+DOCUMENTS = [ROOT / "README.md", *(path for folder in FOLDERS for path in sorted((ROOT / "docs" / folder).glob("*.md")))]
+TUTORIALS = [path for path in DOCUMENTS if path.parent.name == "tutorials" and path.stem != "index"]
+
+
+def blocks(path: Path) -> list[str]:
+    return re.findall(r"^```python\n(.*?)^```$", path.read_text("utf-8"), re.S | re.M)
+
+
 EXAMPLES = [
     pytest.param(code, id=f"{path.name}-{number}")
     for path in DOCUMENTS
-    for number, code in enumerate(re.findall(r"^```python\n(.*?)^```$", path.read_text("utf-8"), re.S | re.M), start=1)
+    if path not in TUTORIALS
+    for number, code in enumerate(blocks(path), start=1)
 ]
+EXAMPLES += [pytest.param("\n".join(blocks(path)), id=path.name) for path in TUTORIALS]  # a tutorial is one script from top to bottom
 
 
 @pytest.mark.parametrize("code", EXAMPLES)
@@ -24,7 +36,7 @@ def test_example_runs_as_printed(code: str, tmp_path: Path) -> None:
     script = tmp_path / "example.py"
     script.write_text(code, "utf-8")
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run([sys.executable, script], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, script], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode == 0, done.stderr
     assert "LoweringWarning" not in done.stderr
 
@@ -44,9 +56,9 @@ def test_every_relative_link_of_the_documents_exists() -> None:
 
 
 def test_the_script_makes_the_pictures_that_the_documents_show(tmp_path: Path) -> None:
-    done = subprocess.run([sys.executable, ROOT / "docs" / "make_pictures.py", tmp_path], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, ROOT / "docs" / "make_pictures.py", tmp_path], capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode == 0, done.stderr
     made = {Path(line).name for line in done.stdout.split()}
-    shown = {Path(target).name for path in DOCUMENTS for target in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", path.read_text("utf-8"))}
-    assert shown == made
+    pictures = {target for path in DOCUMENTS for target in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", path.read_text("utf-8"))}
+    assert {Path(target).name for target in pictures if "pictures/" not in target} == made  # the others: test_gallery.py
     assert all((tmp_path / name).read_bytes().startswith(b"\x89PNG") for name in made)

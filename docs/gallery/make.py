@@ -1,0 +1,75 @@
+"""Makes the pictures of the gallery:  python docs/gallery/make.py [--into FOLDER] [NAME ...]
+
+Every other script of this folder has a function ``make()`` that returns axes of one figure.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import functools
+import importlib.util
+import io
+import re
+import runpy
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1]))
+
+from matplotlib.axes import Axes  # noqa: E402
+
+DOTS_PER_INCH = 110
+
+
+def names() -> list[str]:
+    """Scripts of the gallery."""
+    return sorted(path.stem for path in HERE.glob("*.py") if path.stem != "make")
+
+
+def drawn(name: str) -> Axes:
+    """Axes that a script makes."""
+    spec = importlib.util.spec_from_file_location(f"gallery_{name}", HERE / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    axes = module.make()
+    assert isinstance(axes, Axes)
+    return axes
+
+
+@functools.cache
+def ran(page: str) -> dict[str, Any]:
+    """What the Python code of a page of docs/tutorials/ leaves behind when it is run from top to bottom."""
+    text = (HERE.parent / "tutorials" / f"{page}.md").read_text("utf-8")
+    code = "\n".join(re.findall(r"^```python\n(.*?)^```$", text, re.S | re.M))
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), contextlib.redirect_stdout(io.StringIO()):
+        Path("page.py").write_text(code, "utf-8")
+        return runpy.run_path("page.py")
+
+
+def saved(name: str, folder: Path) -> Path:
+    """Picture of a script as PNG; without a date, so that the same picture gives the same file."""
+    buffer = io.BytesIO()
+    drawn(name).figure.savefig(buffer, format="png", dpi=DOTS_PER_INCH, metadata={"Software": None})
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{name}.png"
+    path.write_bytes(buffer.getvalue())
+    return path
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(names())}; all if not given")
+    parser.add_argument("--into", type=Path, default=HERE / "pictures", metavar="FOLDER")
+    given = parser.parse_args()
+    for name in given.names or names():
+        print(saved(name, given.into))
+
+
+if __name__ == "__main__":
+    main()
