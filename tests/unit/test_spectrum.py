@@ -111,6 +111,13 @@ def test_a_span_is_cut_out_of_the_record() -> None:
     assert late.resolution == pytest.approx(2.0 * np.pi)
 
 
+def test_a_record_that_ends_a_rounding_before_the_end_asked_for_is_taken_whole() -> None:
+    times = np.append(np.arange(1000) * 1e-3, 1.0 - 5e-12)
+    history = hm.TimeHistory("tone", "N m", times, np.sin(2.0 * np.pi * 50.0 * times))
+    found = hm.spectrum(history, end=1.0)
+    assert abs(found.peaks(1)[0].amplitude - 1.0) < 1e-3
+
+
 def test_content_at_the_upper_limit_is_reported_as_folded() -> None:
     signal = history(lambda t: np.sin(2.0 * np.pi * 490.0 * t), even(1000))
     assert "folded" in hm.spectrum(signal).status

@@ -14,6 +14,8 @@ from hdrive_mbs.errors import AnalysisError, ParameterError
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray, TimeHistory
 
+ROUNDING = 1e-9
+"""Of a record's length: a solver that adds up its steps ends this far from where it was told to, at most."""
 MOST_SAMPLES = 2**20
 """Limit of the automatic number of samples."""
 
@@ -145,7 +147,8 @@ def chosen_span(history: TimeHistory, start: float | None, end: float | None) ->
     first, last = float(history.times[0]), float(history.times[-1])
     begin = first if start is None else float(start)
     finish = last if end is None else float(end)
-    if not first - 1e-12 <= begin < finish <= last + 1e-12:
+    rounding = ROUNDING * (last - first)
+    if not first - rounding <= begin < finish <= last + rounding:
         raise AnalysisError(
             f"{history.name} is recorded from {first:g} s to {last:g} s; cannot analyse it from {begin:g} s to {finish:g} s."
         )
