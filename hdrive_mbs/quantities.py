@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, ClassVar, Self
+from weakref import WeakKeyDictionary
 
 from hdrive_mbs.errors import KeywordError, ParameterError, unknown_place
 
@@ -282,17 +283,28 @@ def _without_fields(cls: type[Described]) -> Described:
     return object.__new__(cls)
 
 
-@cache
+_NAMES: WeakKeyDictionary[type, tuple[tuple[str, ...], frozenset[str]]] = WeakKeyDictionary()
+_CHECKED: WeakKeyDictionary[type, tuple[tuple[dataclasses.Field[Any], Quantity | None], ...]] = WeakKeyDictionary()
+"""Worked out once for each class, and forgotten with it."""
+
+
 def _names(cls: type[Described]) -> tuple[tuple[str, ...], frozenset[str]]:
     """Fields that a class takes, and those of them without a default."""
-    fields = dataclasses.fields(cls)
-    return tuple(field.name for field in fields if field.init), frozenset(field.name for field in fields if _is_needed(field))
+    found = _NAMES.get(cls)
+    if found is None:
+        fields = dataclasses.fields(cls)
+        found = tuple(field.name for field in fields if field.init), frozenset(field.name for field in fields if _is_needed(field))
+        _NAMES[cls] = found
+    return found
 
 
-@cache
 def _checked(cls: type[Described]) -> tuple[tuple[dataclasses.Field[Any], Quantity | None], ...]:
     """Fields of a class with their quantities."""
-    return tuple((field, field.metadata.get("quantity")) for field in dataclasses.fields(cls))
+    found = _CHECKED.get(cls)
+    if found is None:
+        found = tuple((field, field.metadata.get("quantity")) for field in dataclasses.fields(cls))
+        _CHECKED[cls] = found
+    return found
 
 
 def _is_needed(field: dataclasses.Field[Any]) -> bool:

@@ -9,13 +9,13 @@ import json
 import os
 import pkgutil
 import re
-import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from hdrive_mbs import bearings, components, effects, flexsplines, loads, motors, teeth
 from hdrive_mbs.components.component import Component
+from hdrive_mbs.documents import read_document
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import FileFormatError, HdriveError, PlaceError, UnitError
 from hdrive_mbs.quantities import Described, Quantity
@@ -92,17 +92,7 @@ def load_scene(path: str | os.PathLike[str], types: Iterable[type[Described]] = 
 
     Raises FileFormatError, UnitError or ParameterError with the path of the entry at fault.
     """
-    source = Path(path)
-    try:
-        text = source.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        raise FileFormatError(f"{path}: cannot be read ({error.strerror or error}).") from error
-    except UnicodeDecodeError as error:
-        raise FileFormatError(f"{path} is not a text file in UTF-8 ({error}).") from error
-    try:
-        document = json.loads(text) if source.suffix.lower() == ".json" else tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise FileFormatError(f"{path} cannot be parsed: {error}") from error
+    document = read_document(Path(path))
     try:
         return scene_from_dict(document, types)
     except HdriveError as error:
@@ -250,7 +240,10 @@ def _sequence(value: Any, path: str, quantity: Quantity) -> tuple[Any, ...]:
     if value["unit"] == quantity.unit:
         return tuple(value["values"])
     to_unit = factor(value["unit"], quantity.unit, path)
-    return tuple(item * to_unit for item in value["values"])
+    try:
+        return tuple(item * to_unit for item in value["values"])
+    except OverflowError:
+        raise FileFormatError(f"{path}: holds a whole number of over 300 digits.") from None
 
 
 def parse_setting(scene: Scene, text: str) -> tuple[str, Any]:

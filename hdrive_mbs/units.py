@@ -12,7 +12,7 @@ from hdrive_mbs.errors import UnitError
 _UNIT = re.compile(r"(?:\s*(?:[^\W\d]\w*+|[%°1]|[*/·()])(?:\s*(?:\*\*|\^)\s*[+-]?\d{1,2}(?![\w.]))?)+\s*")
 """Names, signs and small whole powers: all that a unit needs (pint would work out ``9**9**9`` for ever)."""
 
-_NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)")
 
 
 @functools.cache
@@ -27,7 +27,7 @@ def to_si(text: str, unit: str, where: str) -> float:
 
     Raises UnitError when the number or unit cannot be read, or the unit measures something else.
     """
-    match = _NUMBER.match(text)
+    match = _NUMBER.fullmatch(text.strip())
     if match is None:
         raise UnitError(f"{where} = {text!r}: write a number and a unit, like '1.5 {unit}'.")
     number, given = float(match.group(1)), match.group(2)

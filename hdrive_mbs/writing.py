@@ -38,7 +38,12 @@ def write_whole(path: str | os.PathLike[str], write: Callable[[BinaryIO], object
 
 def write_text(path: str | os.PathLike[str], text: str) -> Path:
     """Write a text file (UTF-8) whole or not at all."""
-    return write_whole(path, lambda file: file.write(text.encode("utf-8")))
+    return write_bytes(path, text.encode("utf-8"))
+
+
+def write_bytes(path: str | os.PathLike[str], data: bytes) -> Path:
+    """Write a file whole or not at all."""
+    return write_whole(path, lambda file: file.write(data))
 
 
 def _umask() -> int:

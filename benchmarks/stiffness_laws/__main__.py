@@ -5,38 +5,33 @@ Reproduces Table 1 and the content of Figs 4-11.  See README.md beside this file
 
 from __future__ import annotations
 
-import argparse
-import os
 import sys
+from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
+
+from benchmarks.command import Found, command, run
 
 HERE = Path(__file__).resolve().parent
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Measure, judge, and write the results; returns 0 when it ran, whatever the verdicts."""
-    parser = argparse.ArgumentParser(description="The stiffness laws of Folega et al. 2014: table, figures, claims.")
-    parser.add_argument("--quick", action="store_true", help="smoke test: short runs, one repeat; most figures mean nothing")
-    parser.add_argument("--repeats", type=int, default=3, help="repeats of each run that takes less than a second (default 3)")
-    parser.add_argument("--out", type=Path, help="folder for the results; default: beside the command, none with --quick")
-    options = parser.parse_args(arguments)
-    if options.repeats < 1:
-        parser.error("--repeats must be at least 1")
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy is loaded
-
+def measure(options: Namespace) -> Found:
     from benchmarks.stiffness_laws.report import report
     from benchmarks.stiffness_laws.study import study
-    from benchmarks.writing import write_results
 
-    numbers, claims, drawn = study(quick=options.quick, repeats=1 if options.quick else options.repeats)
-    text = report(numbers, claims)
-    print(text)
-    folder = options.out or (None if options.quick else HERE)
-    if folder is not None:
-        for path in write_results(folder, numbers, text, drawn):
-            print(f"wrote {path}", file=sys.stderr)
-    return 0
+    numbers, claims, drawn = study(quick=options.quick, repeats=options.repeats)
+    return Found(numbers=numbers, text=report(numbers, claims), figures=drawn)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure, judge, and write the results; returns 0 when it ran, whatever the verdicts."""
+    parser = command(
+        "The stiffness laws of Folega et al. 2014: table, figures, claims.",
+        quick="short runs, one repeat; most figures mean nothing",
+        repeats=3,
+        repeated="repeats of each run that takes less than a second",
+    )
+    return run(parser, arguments, measure, HERE)
 
 
 if __name__ == "__main__":

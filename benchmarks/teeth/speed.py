@@ -11,7 +11,7 @@ import shapely
 import hdrive_mbs as hm
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.teeth.clearance import beside, clearances
-from hdrive_mbs.teeth.design import VARIABLES
+from hdrive_mbs.teeth.design_points import VARIABLES
 from hdrive_mbs.teeth.motion import tooth_motion
 from hdrive_mbs.teeth.polygons import signed_gap
 from models.double_harmonic_transmission import gear

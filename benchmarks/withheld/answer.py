@@ -19,7 +19,7 @@ def answer_of(case: str, finding: Finding, names: Names) -> dict[str, Any]:
     one is claimed: the table of names says beforehand that it is more likely to be there.  Of two claimed causes the one
     that explains more by itself decides: if it has a name, what has none beside it is left out; if not, the answer is "unknown".
     """
-    claimed = _named(finding, names)
+    claimed = names.joined(_named(finding, names))
     verdict = finding.verdict
     if verdict not in WORDS:
         verdict = _verdict([name for name, _ in claimed])

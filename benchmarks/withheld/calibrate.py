@@ -89,7 +89,12 @@ def known_constants() -> dict[str, float]:
 
 
 def grid(value: float) -> list[float]:
-    """Values to try about a constant: of a share below 1 its distance to 1 is scaled, of a mean square its excess over 1."""
+    """Values to try about a constant: of a share below 1 its distance to 1 is scaled, of a mean square its excess over 1.
+
+    A logarithm of odds, which may have any sign but is 0 or less here, is moved.
+    """
+    if value <= 0.0:
+        return [value + move for move in (-2.0, -1.0, 0.0, 1.0, 2.0)]
     if value < 1.0:
         return sorted({round(1.0 - (1.0 - value) * factor, 4) for factor in FACTORS if (1.0 - value) * factor < 1.0})
     if value < 2.0:

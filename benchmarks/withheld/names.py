@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TypeVar
 
+Claim = TypeVar("Claim")
 Label = tuple[str, str]
 """(family, place in our scene), or ("parameter", group of the bench)."""
 Name = tuple[str, str]
@@ -23,12 +25,14 @@ class Names:
 
     causes : label -> name; what is missing here has no name and is answered "unknown"
     places : place or parameter group of our bench -> place of the answer format; a place that is missing keeps its name
+    both : two places -> the place that stands for one cause at both of them
     elsewhere : label without a name -> its place, where that is another than the place in our bench says
     """
 
     causes: Mapping[Label, Name]
     places: Mapping[str, str]
     elsewhere: Mapping[Label, str] = field(default_factory=dict)
+    both: Mapping[frozenset[str], str] = field(default_factory=dict)
 
     def name(self, label: Label) -> Name | None:
         """The name of a cause, None where it has none."""
@@ -42,6 +46,14 @@ class Names:
         """The place of a cause, with a name or without."""
         named = self.name(label)
         return self.elsewhere.get(label, self.place(label[1])) if named is None else named[1]
+
+    def joined(self, claimed: Sequence[tuple[Name, Claim]]) -> list[tuple[Name, Claim]]:
+        """What is claimed, the same cause at two places that have a name together as one, with the first one's values."""
+        if len(claimed) == 2 and claimed[0][0][0] == claimed[1][0][0]:
+            together = self.both.get(frozenset(name[1] for name, _ in claimed))
+            if together is not None:
+                return [((claimed[0][0][0], together), claimed[0][1])]
+        return list(claimed)
 
     def labels(self, name: Name) -> tuple[Label, ...]:
         """All labels that are answered with a name."""

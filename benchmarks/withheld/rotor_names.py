@@ -61,10 +61,12 @@ NAMES = Names(
         "drive": "drive_end",
         **{f"bearing_{k}.law": f"bearing_{k}" for k in SIDES},
         **{f"bearing_{k}.housing": f"support_{k}" for k in SIDES},
+        **{f"rotor_{k}.sensors": f"probe_rotor_{k}" for k in SIDES},
         "support_damping": "support_1",
         "support_stiffness": "support_1",
         "bearing_stiffness": "bearings",
         "bearing_damping": "bearings",
     },
+    both={frozenset({"bearing_1", "bearing_2"}): "bearings"},
     elsewhere={(family, f"bearing_{k}"): f"support_{k}" for family in OF_SUPPORTS for k in SIDES},
 )

@@ -14,7 +14,7 @@ import pickle
 import subprocess
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -25,10 +25,12 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 from benchmarks.machine import machine  # noqa: E402
 from benchmarks.withheld.answer import failed_answer  # noqa: E402
 from benchmarks.withheld.methods import METHODS, method  # noqa: E402
+from hdrive_mbs.campaign.dask_cluster import packed, run_on_cluster  # noqa: E402
 from hdrive_mbs.campaign.in_this_process import run_here  # noqa: E402
 from hdrive_mbs.campaign.local_processes import run_on_processes  # noqa: E402
 from hdrive_mbs.campaign.outcome import Outcome  # noqa: E402
 from hdrive_mbs.diagnosis import verdict  # noqa: E402
+from hdrive_mbs.errors import DependencyError, SimulationError  # noqa: E402
 from hdrive_mbs.writing import write_text  # noqa: E402
 
 RETRIES = 1
@@ -59,6 +61,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, required=True, help="answers.json, written as answers come")
     parser.add_argument("--only", default="", help="names of cases, with commas between them")
     parser.add_argument("--workers", type=int, default=1, help="cases side by side, a process each (default 1); 0: in this process")
+    parser.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="use the dask cluster of this scheduler, like tcp://host:8786; its workers see the same folders and have this on PYTHONPATH",
+    )
     parser.add_argument("--method", choices=tuple(METHODS), default="full", help="the diagnosis, or a baseline")
     parser.add_argument("--raw", type=Path, help="raw figures of the diagnosis, for --method training")
     parser.add_argument("--truths", type=Path, help="opened truths, for --method oracle")
@@ -78,6 +85,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         cases,
         options.out,
         workers=options.workers,
+        scheduler=options.scheduler,
         again=lambda answer: options.again or (options.failed and "error" in answer),
     )
 
@@ -91,20 +99,28 @@ def cases_of(folder: Path, bench: str, wanted: Sequence[str] = ()) -> dict[str, 
     return {name: path for name, path in found.items() if not wanted or name in wanted}
 
 
-def answer_cases(job: Job, cases: Mapping[str, Path], out: Path, *, workers: int, again: Any = lambda answer: False) -> int:
-    """Answer cases into a file; returns 0, or 1 when one failed.
+def answer_cases(
+    job: Job,
+    cases: Mapping[str, Path],
+    out: Path,
+    *,
+    workers: int,
+    scheduler: str | None = None,
+    again: Callable[[Mapping[str, Any]], bool] = lambda answer: False,
+) -> int:
+    """Answer cases into a file; returns 0, or 1 when one failed or the cluster was lost.
 
-    workers : processes; 0 for this process alone;  again : says of an answer that is there already whether it is made anew
+    workers : processes; 0 for this process alone;  scheduler : address of a dask scheduler, whose workers are used instead
+    again : says of an answer that is there already whether it is made anew
     """
     answers = read_answers(out)
-    points = {name: {"folder": str(path)} for name, path in cases.items() if name not in answers or again(answers[name])}
+    points = {name: {"folder": str(path.resolve())} for name, path in cases.items() if name not in answers or again(answers[name])}
     kept = len(cases) - len(points)
     print(f"{len(cases)} cases, {kept} answered already", file=sys.stderr)
     write_text(out.with_suffix(".about.json"), json.dumps(about(job), indent=1) + "\n")
-    outcomes = run_on_processes(pickle.dumps(job), points, workers=workers, retries=RETRIES) if workers else run_here(job, points)
     start, failed = time.monotonic(), 0
     try:
-        for done, (name, outcome) in enumerate(outcomes if points else (), start=1):
+        for done, (name, outcome) in enumerate(_outcomes(job, points, workers, scheduler), start=1):
             answers[name] = _answer(name, outcome, out)
             failed += "error" in answers[name]
             write_answers(out, answers)
@@ -112,7 +128,19 @@ def answer_cases(job: Job, cases: Mapping[str, Path], out: Path, *, workers: int
     except KeyboardInterrupt:
         print(f"stopped; the same command goes on from {out}", file=sys.stderr)
         return 130
+    except (SimulationError, DependencyError) as error:
+        print(f"error: {error}\nwhat is answered is kept; the same command goes on from {out}", file=sys.stderr)
+        return 1
     return 1 if failed else 0
+
+
+def _outcomes(job: Job, points: Mapping[str, Mapping[str, Any]], workers: int, scheduler: str | None) -> Iterator[tuple[str, Outcome]]:
+    """Name and outcome of each case, as they come."""
+    if not points:
+        return iter(())
+    if scheduler is not None:
+        return run_on_cluster(scheduler, packed(job), points, retries=RETRIES)
+    return run_on_processes(pickle.dumps(job), points, workers=workers, retries=RETRIES) if workers else run_here(job, points)
 
 
 def _answer(name: str, outcome: Outcome, out: Path) -> dict[str, Any]:

@@ -12,6 +12,7 @@ import json
 import os
 import platform
 import warnings
+import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import metadata
@@ -23,6 +24,7 @@ import numpy as np
 from hdrive_mbs.errors import FileFormatError, HdriveError
 from hdrive_mbs.export.formats import write_table
 from hdrive_mbs.export.table import table_of
+from hdrive_mbs.memory_limit import check_claim
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.scene_file import scene_from_dict, scene_to_dict
 from hdrive_mbs.writing import write_text, write_whole
@@ -76,6 +78,20 @@ class Result:
         lines = [f"  {name:<{width}}  {_in_short(getattr(self, name))}" for name in shown]
         return "\n".join([f"{type(self).__name__}{of}: {self.status}", *lines])
 
+    def made_from(self) -> dict[str, Any]:
+        """Where the numbers come from, as plain data: kind of result, status, settings, versions, and the scene.
+
+        The scene is what ``scene_from_dict`` takes, and as a .json file ``load_scene``; None where it holds Python
+        functions.
+        """
+        return {
+            "result": type(self).__name__,
+            "status": self.status,
+            "settings": _readable(self.settings),
+            "versions": dict(self.versions),
+            "scene": _packed_scene(self.scene)[0],
+        }
+
     def columns(self) -> dict[str, np.ndarray]:
         """Equally long columns for CSV, headed ``name [unit]``."""
         raise NotImplementedError(f"{type(self).__name__} has no table.")
@@ -124,9 +140,9 @@ class Result:
         return write_whole(path, write)
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Self:
-        """Read a result of this type.  Raises FileFormatError for a truncated or foreign file."""
-        result = load(path)
+    def load(cls, path: str | os.PathLike[str], *, verify: bool = True) -> Self:
+        """Read a result of this type.  Raises FileFormatError for a truncated, changed or foreign file; see ``load``."""
+        result = load(path, verify=verify)
         if not isinstance(result, cls):
             raise FileFormatError(f"{path} holds a {type(result).__name__}, not a {cls.__name__}.")
         return result
@@ -142,27 +158,60 @@ def write_csv(path: str | os.PathLike[str], columns: Mapping[str, np.ndarray]) -
     return write_text(path, text.getvalue())
 
 
-def load(path: str | os.PathLike[str]) -> Result:
+def load(path: str | os.PathLike[str], *, verify: bool = True) -> Result:
     """Read any saved result.
 
-    Raises FileFormatError when the file is missing, truncated, changed, or not a result of ours.
-    Warns and leaves ``scene`` None when only the scene cannot be made again (it names a class of a
+    verify : refuse a file whose checksum does not fit its content; False reads it with a warning
+
+    Raises FileFormatError when the file is missing, truncated, changed, too large for the memory, or not a result of
+    ours.  Warns and leaves ``scene`` None when only the scene cannot be made again (it names a class of a
     user's own that is not imported).  No code is executed from the file.
     """
-    try:
-        with np.load(Path(path), allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in archive.files}
-        document = json.loads(bytes(arrays.pop("head")).decode())
-    except FileNotFoundError:
-        raise FileFormatError(f"{path}: no such file.") from None
-    except Exception as error:  # zip, zlib, numpy and json each raise their own kinds for a damaged file
-        raise FileFormatError(f"{path} is not a result of hdrive_mbs, or it is truncated ({error}).") from error
-    found = document.get("format") if isinstance(document, dict) else None
+    document, arrays = _content(path)
+    found = document.get("format")
     if found != FORMAT:
         newer = " A newer version of hdrive_mbs wrote it; update this one." if str(found).startswith(FORMAT[:-1]) else ""
         raise FileFormatError(f"{path} is not in the format {FORMAT!r} (found {found!r}).{newer}")
-    if document.pop("sha256", None) != _checksum(document, arrays):
-        raise FileFormatError(f"{path}: the checksum does not fit; the file was changed or damaged.")
+    told = document.pop("sha256", None)
+    try:
+        right = _checksum(document, arrays)
+    except RecursionError as error:
+        raise FileFormatError(f"{path} is not a result of hdrive_mbs: its head is nested too deep.") from error
+    if told != right:
+        said = f"{path}: the checksum does not fit; the file was changed or damaged"
+        if verify:
+            raise FileFormatError(f"{said}. Take another copy, or read it as it is with load(path, verify=False).")
+        warnings.warn(f"{said}, and is read as it is.", stacklevel=2)
+    try:
+        return _rebuilt(path, document, arrays)
+    except HdriveError:
+        raise
+    except Exception as error:  # the checksum is no secret: whatever may stand there
+        raise FileFormatError(f"{path} does not hold what a result of hdrive_mbs holds ({type(error).__name__}: {error}).") from error
+
+
+def _content(path: str | os.PathLike[str]) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """Head and arrays of a file.  Raises FileFormatError for one that is no archive of these."""
+    if Path(path).exists() and not Path(path).is_file():
+        raise FileFormatError(f"{path} is no file with a result.")
+    try:
+        with zipfile.ZipFile(path) as archive:
+            check_claim(path, sum(item.file_size for item in archive.infolist()))
+        with np.load(Path(path), allow_pickle=False) as numbers:
+            arrays = {name: numbers[name] for name in numbers.files}
+        document = json.loads(bytes(arrays.pop("head")).decode())
+        if not isinstance(document, dict) or not all(isinstance(item, np.ndarray) for item in arrays.values()):
+            raise ValueError("its head is no table, or a member is no array")
+    except FileNotFoundError:
+        raise FileFormatError(f"{path}: no such file.") from None
+    except FileFormatError:
+        raise
+    except Exception as error:  # zip, zlib, numpy and json each raise their own kinds for a damaged file
+        raise FileFormatError(f"{path} is not a result of hdrive_mbs, or it is truncated ({error}).") from error
+    return document, arrays
+
+
+def _rebuilt(path: str | os.PathLike[str], document: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> Result:
     kind = _kind(document["result"])
     if kind is None:
         raise FileFormatError(f"{path} holds a {document['result']!r}, which this version does not know.")
@@ -203,8 +252,8 @@ def _unpacked_scene(document: dict[str, Any] | None, path: str | os.PathLike[str
         return None
     try:
         return scene_from_dict(document)
-    except HdriveError as error:
-        warnings.warn(f"{path}: the numbers are complete, but the scene cannot be made again ({error}).", stacklevel=3)
+    except (HdriveError, RecursionError) as error:
+        warnings.warn(f"{path}: the numbers are complete, but the scene cannot be made again ({error}).", stacklevel=4)
         return None
 
 
@@ -246,6 +295,19 @@ def _packed_scene(scene: Scene | None) -> tuple[dict[str, Any] | None, str]:
         return scene_to_dict(scene), ""
     except FileFormatError as error:
         return None, str(error)
+
+
+def _readable(value: Any) -> Any:
+    """Settings as plain data for a reader: arrays as lists, other objects as text."""
+    if isinstance(value, Mapping):
+        return {str(key): _readable(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return _readable(value.tolist())
+    if isinstance(value, (tuple, list)):
+        return [_readable(item) for item in value]
+    if isinstance(value, np.generic):
+        return value.item()
+    return value if value is None or isinstance(value, (str, int, float, bool)) else str(value)
 
 
 def _checksum(document: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> str:

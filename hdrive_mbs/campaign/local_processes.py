@@ -7,32 +7,23 @@ Here a process has one job at a time, so a lost one costs that job's time alone 
 from __future__ import annotations
 
 import contextlib
-import multiprocessing
-import os
-import signal
-import threading
+import pickle
 from collections import Counter, deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from multiprocessing import connection
-from multiprocessing.process import BaseProcess
 from typing import Any
 
 from hdrive_mbs.campaign.outcome import Outcome, lost, run_pickled
 from hdrive_mbs.campaign.points import Point
 from hdrive_mbs.errors import SimulationError
-
-READY = "ready"
-ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-"""A process per core and a thread per core each would be slower; and sums would depend on the number of threads."""
+from hdrive_mbs.worker_process import READY, WorkerProcess, work_for_parent
 
 
-@dataclass(kw_only=True)
-class _Worker:
-    """A process, this end of its pipe, and what it is at: a job's key, READY, or None while it starts."""
+@dataclass(eq=False, kw_only=True)
+class _Worker(WorkerProcess):
+    """A process and what it is at: a job's key, READY, or None while it starts."""
 
-    process: BaseProcess
-    pipe: connection.Connection
     at: str | None = None
 
 
@@ -49,9 +40,10 @@ def run_on_processes(task: bytes, jobs: Mapping[str, Point], *, workers: int, re
         while waiting or any(worker.at in jobs for worker in crew):
             for worker in crew:
                 if worker.at == READY and waiting:
-                    _give(worker, waiting.popleft(), jobs)
+                    worker.at = waiting.popleft()
+                    worker.send(jobs[worker.at])
             while len(crew) < workers and sum(worker.at is None for worker in crew) < len(waiting):
-                crew.append(_start(task))
+                crew.append(_Worker.start(_work, task, name="campaign worker"))
             by_pipe: dict[Any, _Worker] = {worker.pipe: worker for worker in crew}
             for pipe in connection.wait(list(by_pipe)):
                 worker = by_pipe[pipe]
@@ -59,7 +51,7 @@ def run_on_processes(task: bytes, jobs: Mapping[str, Point], *, workers: int, re
                     message = worker.pipe.recv()
                 except (EOFError, OSError):
                     crew.remove(worker)
-                    reason = _end(worker, patience=5.0)
+                    reason = worker.end(5.0)
                     if worker.at in jobs:
                         key = str(worker.at)
                         attempts[key] += 1
@@ -81,46 +73,7 @@ def run_on_processes(task: bytes, jobs: Mapping[str, Point], *, workers: int, re
                     )
     finally:
         for worker in crew:
-            _end(worker, patience=0.0)
-
-
-def _give(worker: _Worker, key: str, jobs: Mapping[str, Point]) -> None:
-    worker.at = key
-    with contextlib.suppress(OSError):  # it has just died: the pipe will say so
-        worker.pipe.send(jobs[key])
-
-
-def _start(task: bytes) -> _Worker:
-    context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe()
-    process = context.Process(target=_work, args=(theirs, task), name="campaign worker", daemon=True)
-    with _one_thread_each():
-        process.start()
-    theirs.close()  # so that its end is closed when the process dies
-    return _Worker(process=process, pipe=ours)
-
-
-@contextlib.contextmanager
-def _one_thread_each() -> Iterator[None]:
-    """The environment that a process starts with; numpy reads it when it is loaded."""
-    missing = [name for name in ONE_THREAD if name not in os.environ]
-    os.environ.update(dict.fromkeys(missing, "1"))
-    try:
-        yield
-    finally:
-        for name in missing:
-            os.environ.pop(name, None)
-
-
-def _end(worker: _Worker, *, patience: float) -> str:
-    """Wait some seconds for the process to end, then kill it; returns how it ended."""
-    worker.pipe.close()
-    worker.process.join(patience)
-    if worker.process.is_alive():
-        worker.process.kill()
-        worker.process.join()
-    code = worker.process.exitcode
-    return f"signal {signal.Signals(-code).name}" if code is not None and code < 0 else f"exit code {code}"
+            worker.end()
 
 
 def _no_start(reason: str) -> SimulationError:
@@ -132,10 +85,7 @@ def _no_start(reason: str) -> SimulationError:
 
 def _work(pipe: connection.Connection, task: bytes) -> None:
     """A worker: says that it is ready, then answers each point with an outcome until the pipe is closed."""
-    import pickle
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all; the parent stops the workers
-    threading.Thread(target=_leave_with_parent, daemon=True).start()
+    work_for_parent()
     try:
         pickle.loads(task)
     except Exception as error:
@@ -145,10 +95,3 @@ def _work(pipe: connection.Connection, task: bytes) -> None:
         pipe.send(READY)
         while True:
             pipe.send(run_pickled(task, pipe.recv()))
-
-
-def _leave_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        connection.wait([parent.sentinel])
-        os._exit(1)

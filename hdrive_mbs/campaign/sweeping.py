@@ -31,6 +31,7 @@ def sweep(
     retries: int = 2,
     units: Mapping[str, str] | None = None,
     progress: bool | None = None,
+    arrived: Callable[[Point, Mapping[str, Any]], object] | None = None,
 ) -> Campaign:
     """Call ``function(point)`` for every point and collect what it returns, in the order of the points.
 
@@ -45,6 +46,8 @@ def sweep(
     retries : how often a job is begun again whose worker was lost
     units : unit of each parameter, for the head of the table
     progress : show a bar with the time left; None for "when stderr is a terminal"
+    arrived : called in this process with the point and values of each job that is finished, as it comes in; of those
+        found in the folder too
 
     A job that raises is listed in ``failures`` with its point and traceback, and the others go on; the next call runs
     it again.  Ctrl-C, or a cluster that is lost, stops and returns what is finished, which the status says.  The result
@@ -68,6 +71,8 @@ def sweep(
                 jobs[key] = point
             else:
                 outcomes[key] = kept
+                if arrived is not None and kept.values is not None:
+                    arrived(point, kept.values)
     reused = set(outcomes)
     stopped = ""
     if jobs:
@@ -78,6 +83,8 @@ def sweep(
                 for done, (key, outcome) in enumerate(arriving, start=1):
                     outcomes[key] = outcome
                     files.write(key, name, jobs[key], outcome)
+                    if arrived is not None and outcome.values is not None:
+                        arrived(jobs[key], outcome.values)
                     if report is not None:
                         report(done)
             except KeyboardInterrupt:

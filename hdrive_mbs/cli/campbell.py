@@ -42,7 +42,7 @@ def campbell(
         result.to_csv(out / "campbell.csv")
         write_csv(out / "critical_speeds.csv", result.critical_columns())
         save_figure(plot(result), out / "campbell")
-    write_json(json, document(result))
+    write_json(json, {**document(result), "origin": result.made_from()})
     if json != "-":
         _print(chosen.name, result)
 

@@ -64,13 +64,13 @@ def diagnose(
     chosen = open_bench(scene)
     kinds = tried(effects or ())
     reading: dict[str, Any] = {
-        "channels": _pairs("--channel", channel) or None,
-        "units": _pairs("--unit", unit),
+        "channels": pairs("--channel", channel) or None,
+        "units": pairs("--unit", unit),
         "time": time,
-        "repair": _pairs("--repair", repair) or None,
+        "repair": pairs("--repair", repair) or None,
     }
     paths = [*records, *(more or ())]
-    measured = _read(paths, reading)
+    measured = measured_in(paths, reading)
     name = chosen.name if isinstance(chosen, Scene) else chosen.scene.name
     folder = out or Path("results") / re.sub(r"\W+", "_", f"diagnosis {name}")
     work = _begin(folder / WORK, _job(scene, measured, effects or (), reading), resume)
@@ -146,7 +146,7 @@ def write_answer(result: Diagnosis, folder: Path) -> None:
     write_report_html(result, folder / "diagnosis.html")
 
 
-def _read(paths: Sequence[Path], reading: Mapping[str, Any]) -> Records:
+def measured_in(paths: Sequence[Path], reading: Mapping[str, Any]) -> Records:
     """Records of a folder and files together."""
     from hdrive_mbs.records.collection import Records
     from hdrive_mbs.records.reading import read_records
@@ -161,7 +161,7 @@ def _read(paths: Sequence[Path], reading: Mapping[str, Any]) -> Records:
     return Records(records=tuple(record for records in found for record in records))
 
 
-def _pairs(option: str, texts: Sequence[str] | None) -> dict[str, str]:
+def pairs(option: str, texts: Sequence[str] | None) -> dict[str, str]:
     """``NAME=VALUE`` -> a mapping."""
     found = {}
     for text in texts or ():

@@ -8,7 +8,22 @@ from typing import Annotated
 import typer
 
 from hdrive_mbs import __version__
-from hdrive_mbs.cli import animate, bench, campbell, demo, diagnose, effects, modes, run, run_up, sweep, teeth, torsion, unbalance
+from hdrive_mbs.cli import (
+    animate,
+    bench,
+    campbell,
+    demo,
+    diagnose,
+    diagnose_all,
+    effects,
+    modes,
+    run,
+    run_up,
+    sweep,
+    teeth,
+    torsion,
+    unbalance,
+)
 from hdrive_mbs.errors import HdriveError
 
 app = typer.Typer(
@@ -42,6 +57,7 @@ app.command()(run_up.run_up)
 app.command()(animate.animate)
 app.command()(sweep.sweep)
 app.command()(diagnose.diagnose)
+app.command()(diagnose_all.diagnose_all)
 
 
 def main() -> None:

@@ -54,6 +54,7 @@ def modes(
             "motor_speed": result.motor_speed,
             "torques": dict(result.torques),
             "status": result.status,
+            "origin": result.made_from(),
         },
     )
     if json != "-":
@@ -89,6 +90,7 @@ def _whirl_modes(scene: Scene, torque: float | None, speed: float | None, count:
             "decay_rates": result.decay_rates,
             "free_motions": result.free_motions,
             "status": result.status,
+            "origin": result.made_from(),
         },
     )
     if json != "-":

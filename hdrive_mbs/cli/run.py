@@ -62,6 +62,7 @@ def run(
             "result": str(result),
             "csv": None if table is None else str(table),
             "pictures": [str(path) for path in pictures],
+            "origin": response.made_from(),
         },
     )
     if json != "-":

@@ -46,7 +46,7 @@ def run_up(
     pictures = save_figure(plot(result), folder / name)
     table = result.to_csv(folder / f"{name}.csv") if csv else None
     files = {"result": str(saved), "csv": None if table is None else str(table), "pictures": [str(path) for path in pictures]}
-    write_json(json, {"scene": chosen.name, **figures(result), **files})
+    write_json(json, {"scene": chosen.name, **figures(result), **files, "origin": result.made_from()})
     if json != "-":
         _print(chosen.name, result)
         print(f"{result.steps} steps, {result.seconds:.3f} s CPU. Result: {saved}. Picture: {pictures[0]}.")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -128,11 +128,7 @@ def sweep(
     write_json(json, document(result, str(table)))
     if json != "-":
         _print(chosen.name, result, table)
-    if result.failures:
-        told = write_text(folder / "failures.txt", "\n".join(_told(failure) + failure["traceback"] for failure in result.failures))
-        for failure in result.failures[:10]:
-            print(_told(failure), end="", file=sys.stderr)
-        print(f"{len(result.failures)} failed; all of them with traceback: {told}", file=sys.stderr)
+    tell_failures(result.failures, folder)
     if not bool(result.done.all()):
         raise typer.Exit(1 if result.failures and "stopped" not in result.status else 130)
 
@@ -178,6 +174,8 @@ def document(result: Campaign, table: str) -> dict[str, Any]:
         "columns": result.columns(),
         "failures": [dict(failure) for failure in result.failures],
         "table": table,
+        "settings": dict(result.settings),
+        "versions": dict(result.versions),
     }
 
 
@@ -203,8 +201,19 @@ def _is_ours(item: Any) -> bool:
     return type(item).__module__.startswith("hdrive_mbs.") and all(_is_ours(value) for _, value, _ in item.fields())
 
 
-def _told(failure: Mapping[str, Any]) -> str:
-    return f"failed: {shown(failure['parameters'])}: {failure['error']}\n"
+def tell_failures(failures: Sequence[Mapping[str, Any]], folder: Path, of: Callable[[Mapping[str, Any]], str] = shown) -> None:
+    """Failed jobs with their parameters on stderr, and with traceback in a file; that file goes when none failed.
+
+    of : a point in words
+    """
+    file = folder / "failures.txt"
+    if not failures:
+        file.unlink(missing_ok=True)
+        return
+    told = [f"failed: {of(failure['parameters'])}: {failure['error']}\n" for failure in failures]
+    write_text(file, "\n".join(line + failure["traceback"] for line, failure in zip(told, failures, strict=True)))
+    print("".join(told[:10]), end="", file=sys.stderr)
+    print(f"{len(failures)} failed; all of them with traceback: {file}", file=sys.stderr)
 
 
 def _digest(path: Path) -> str:
@@ -216,13 +225,14 @@ def _digest(path: Path) -> str:
 def _print(name: str, result: Campaign, table: Path) -> None:
     columns = result.columns()
     told = [head for head in columns if head != "job" and not head.endswith("status")][:6] + (["job"] if result.failures else [])
-    rows = [[_cell(columns[head][k]) for head in told] for k in range(min(len(result), 40))]
+    rows = [[cell(columns[head][k]) for head in told] for k in range(min(len(result), 40))]
     print_table(f"{name}: {result.status}", told, rows)
     reused = f", {result.reused} of them found finished" if result.reused else ""
     print(f"{int(result.done.sum())} of {len(result)} jobs done{reused}. All columns: {table}.")
 
 
-def _cell(value: Any) -> str:
+def cell(value: Any) -> str:
+    """A value of a table for people."""
     if isinstance(value, np.floating):
         return "-" if np.isnan(value) else f"{value:.6g}"
     return str(value)

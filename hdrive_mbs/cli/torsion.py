@@ -39,7 +39,7 @@ def torsion(
         result.save(out / "torsion.npz")
         result.to_csv(out / "torsion.csv")
         save_figure(plot(result), out / "torsion")
-    write_json(json, {"torque": result.torque, "angle": result.angle})
+    write_json(json, {"torque": result.torque, "angle": result.angle, "origin": result.made_from()})
     if json != "-":
         pick = range(0, len(result.torque), max(1, len(result.torque) // 20))
         rows = [[f"{result.torque[k]:.6g}", float(result.angle[k]), float(result.stiffness[k])] for k in pick]

@@ -51,7 +51,7 @@ def unbalance(
         smooth = result.refined()
         for view in ("bode", "polar", "orbits", *(("forces",) if result.bearings else ())):
             save_figure(plot(smooth, view=view, places=None if view == "forces" else drawn), out / f"unbalance_{view}")
-    write_json(json, _document(result, wanted))
+    write_json(json, {**_document(result, wanted), "origin": result.made_from()})
     if json != "-":
         rows = [[p.place, p.speed, p.amplitude, p.width, p.quality] for p in result.peaks if p.place in wanted]
         headers = ["place", "speed [rad/s]", "amplitude, 0-peak [m]", "half-power width [rad/s]", "quality factor"]

@@ -122,8 +122,13 @@ class Simulator:
 
     def columns(self, hypothesis: Hypothesis, point: FloatArray) -> list[Values]:
         """Simulated values of the columns of each trial, in their units; empty where a trial cannot be run."""
-        starts = self._lines.at(hypothesis, [point])
-        return [self._simulated(number, starts[number])[0] or {} for number in range(len(self.trials))]
+        return [item or {} for item in self.columns_at(hypothesis, [point])[0]]
+
+    def columns_at(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[list[Values | None]]:
+        """Likewise at several points, for each of them: None for a trial that cannot be run."""
+        starts = self._lines.at(hypothesis, points)
+        found = [self._simulated(number, starts[number]) for number in range(len(self.trials))]
+        return [[item[k] for item in found] for k in range(len(points))]
 
     def start_of(self, number: int, hypothesis: Hypothesis, point: FloatArray) -> dict[str, float]:
         """Angles at which a trial starts [rad, m], by coordinate."""

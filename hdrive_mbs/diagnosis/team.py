@@ -15,8 +15,9 @@ from typing import Any, Self, TypeVar
 
 from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.packing import packed
-from hdrive_mbs.diagnosis.worker import READY, Worker
+from hdrive_mbs.diagnosis.worker import Worker
 from hdrive_mbs.errors import AnalysisError, ParameterError
+from hdrive_mbs.worker_process import READY
 
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
@@ -97,7 +98,7 @@ class Team:
         path = Path(self._folder.name) / f"{self._number}.pickle"
         path.write_bytes(packed(shared))
         while len(self._running) < self.workers:
-            self._running.append(Worker.start())
+            self._running.append(Worker.begun())
         waiting = list(items)
         for worker in self._running:
             if worker.ready and waiting:

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE
+from hdrive_mbs.effects.motor_lag import MotorLag
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
@@ -15,7 +15,7 @@ from hdrive_mbs.quantities import parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class ActuatorLag(Effect):
+class ActuatorLag(MotorLag):
     """First-order lag of the torque of a motor.
 
     tau = y,  dy/dt = (M - y)/t
@@ -31,27 +31,15 @@ class ActuatorLag(Effect):
     time_constant: float = parameter("s", "t", low=0.0, high=10.0, typical=(5e-5, 0.05))
     fastest_rate: float = parameter("1/s", "f, rate up to which the lag is followed", default=FASTEST_RATE, above=0.0)
 
-    acts_on: ClassVar[str] = "motor"
-    kind: ClassVar[str] = "hidden state"
-    family: ClassVar[str] = "actuator_lag"
     signature: ClassVar[str] = "speed follows fast torque commands late; a closed loop that is less damped, nothing at steady torque"
 
-    def apply(self, draft: Draft, place: str, name: str) -> None:
-        kind = type(self).__name__
+    @property
+    def share(self) -> float:
+        return min(1.0, self.time_constant * self.fastest_rate)
 
-        def change(torque: Callable[[Moment], Value]) -> Callable[[Moment], Value]:
-            if self.time_constant == 0.0:
-                return torque
+    def add_filter(self, draft: Draft, name: str, torque: Callable[[Moment], Value]) -> str:
+        def rate(moment: Moment) -> Value:
+            return (torque(moment) - moment.state(state)) * (self.share / self.time_constant)
 
-            share = min(1.0, self.time_constant * self.fastest_rate)
-
-            def rate(moment: Moment) -> Value:
-                return (torque(moment) - moment.state(state)) * (share / self.time_constant)
-
-            state = draft.add_state(f"{name}.lagged", unit="N m", initial=0.0, rate=rate)
-            if share == 1.0:
-                return lambda moment: moment.state(state)
-            return lambda moment: share * moment.state(state) + (1.0 - share) * torque(moment)
-
-        delivered = draft.change_motor(place, change, kind)
-        draft.add_channel(f"{name}.torque", "N m", f"torque that reaches the rotor of {place}", delivered)
+        state = draft.add_state(f"{name}.lagged", unit="N m", initial=0.0, rate=rate)
+        return state

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hdrive_mbs.effects.effect import MemoryTwistEffect
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE
 from hdrive_mbs.effects.maxwell_slip_hysteresis import MaxwellSlipHysteresis
-from hdrive_mbs.expression import Value
+from hdrive_mbs.effects.slider_hysteresis import ELEMENTS, SliderHysteresis
 from hdrive_mbs.quantities import parameter
-
-ELEMENTS = 4
-"""Sliders in parallel: as many as the engine runs without a Python callback."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class IwanHysteresis(MemoryTwistEffect):
+class IwanHysteresis(SliderHysteresis):
     """Four Maxwell-slip elements of equal stiffness that slip one after the other.
 
     tau = sum(T_i),  k_i = 2 T_h/(4 x_s),  L_i = k_i x_s (i - 1/2)/4,  i = 1..4
@@ -35,27 +30,12 @@ class IwanHysteresis(MemoryTwistEffect):
     rounding: float = parameter("1", "part of each limit over which its corner is rounded", default=0.1, low=0.0, high=1.0)
     fastest_rate: float = parameter("1/s", "f, rate up to which the state is followed", default=FASTEST_RATE, above=0.0)
 
-    family: ClassVar[str] = "hysteresis"
-    dissipative: ClassVar[bool] = True
     signature: ClassVar[str] = "torque-twist loop that does not depend on speed, with closed inner loops and parabolic branches"
 
     @property
     def elements(self) -> MaxwellSlipHysteresis:
-        """The law with its elements written out."""
         stiffness = 2.0 * self.torque_limit / (ELEMENTS * self.slip_twist)
         limits = tuple(stiffness * self.slip_twist * (k + 0.5) / ELEMENTS for k in range(ELEMENTS))
         return MaxwellSlipHysteresis(
             stiffness=(stiffness,) * ELEMENTS, torque_limit=limits, rounding=self.rounding, fastest_rate=self.fastest_rate
         )
-
-    def states(self) -> Mapping[str, str]:
-        return self.elements.states()
-
-    def state_rate(self, name: str, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
-        return self.elements.state_rate(name, time, twist, rate, state)
-
-    def torque(self, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
-        return self.elements.torque(time, twist, rate, state)
-
-    def stored(self, state: Mapping[str, Value]) -> Value:
-        return self.elements.stored(state)

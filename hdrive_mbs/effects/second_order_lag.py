@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE
+from hdrive_mbs.effects.motor_lag import MotorLag
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
@@ -16,7 +16,7 @@ from hdrive_mbs.quantities import parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class SecondOrderLag(Effect):
+class SecondOrderLag(MotorLag):
     """Current control of a motor as a filter of second order.
 
     tau = y,  dy/dt = r,  dr/dt = f^2 (M - y) - 2 z f r,  f = 2 z/t
@@ -33,30 +33,25 @@ class SecondOrderLag(Effect):
     damping_ratio: float = parameter("1", "z", default=0.7, above=0.0, high=10.0, typical=(0.3, 1.5))
     fastest_rate: float = parameter("rad/s", "f_r, rate up to which the filter is followed", default=FASTEST_RATE, above=0.0)
 
-    acts_on: ClassVar[str] = "motor"
-    kind: ClassVar[str] = "hidden state"
-    family: ClassVar[str] = "actuator_lag"
     signature: ClassVar[str] = "speed follows fast torque commands late and rounded; a closed loop that is less damped"
 
-    def apply(self, draft: Draft, place: str, name: str) -> None:
-        kind = type(self).__name__
+    @property
+    def frequency(self) -> float:
+        """f [rad/s], or what can be followed of it."""
+        fastest = max(1.0, self.damping_ratio + math.sqrt(max(self.damping_ratio**2 - 1.0, 0.0)))  # faster pole over f
+        return min(2.0 * self.damping_ratio / self.delay, self.fastest_rate / fastest)
 
-        def change(torque: Callable[[Moment], Value]) -> Callable[[Moment], Value]:
-            if self.delay == 0.0:
-                return torque
-            fastest = max(1.0, self.damping_ratio + math.sqrt(max(self.damping_ratio**2 - 1.0, 0.0)))  # faster pole over f
-            frequency = min(2.0 * self.damping_ratio / self.delay, self.fastest_rate / fastest)
-            share = self.delay * frequency / (2.0 * self.damping_ratio)
+    @property
+    def share(self) -> float:
+        return self.delay * self.frequency / (2.0 * self.damping_ratio) if self.delay > 0.0 else 0.0
 
-            def second(moment: Moment) -> Value:
-                behind = torque(moment) - moment.state(lagged)
-                return frequency * (frequency * behind - 2.0 * self.damping_ratio * moment.state(slope))
+    def add_filter(self, draft: Draft, name: str, torque: Callable[[Moment], Value]) -> str:
+        frequency = self.frequency
 
-            lagged = draft.add_state(f"{name}.lagged", unit="N m", initial=0.0, rate=lambda moment: moment.state(slope))
-            slope = draft.add_state(f"{name}.slope", unit="N m/s", initial=0.0, rate=second)
-            if share == 1.0:
-                return lambda moment: moment.state(lagged)
-            return lambda moment: share * moment.state(lagged) + (1.0 - share) * torque(moment)
+        def second(moment: Moment) -> Value:
+            behind = torque(moment) - moment.state(lagged)
+            return frequency * (frequency * behind - 2.0 * self.damping_ratio * moment.state(slope))
 
-        delivered = draft.change_motor(place, change, kind)
-        draft.add_channel(f"{name}.torque", "N m", f"torque that reaches the rotor of {place}", delivered)
+        lagged = draft.add_state(f"{name}.lagged", unit="N m", initial=0.0, rate=lambda moment: moment.state(slope))
+        slope = draft.add_state(f"{name}.slope", unit="N m/s", initial=0.0, rate=second)
+        return lagged

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hdrive_mbs.effects.effect import MemoryTwistEffect
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE
-from hdrive_mbs.effects.iwan_hysteresis import ELEMENTS
 from hdrive_mbs.effects.maxwell_slip_hysteresis import MaxwellSlipHysteresis
-from hdrive_mbs.expression import Value
+from hdrive_mbs.effects.slider_hysteresis import ELEMENTS, SliderHysteresis
 from hdrive_mbs.quantities import parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpreadSlipHysteresis(MemoryTwistEffect):
+class SpreadSlipHysteresis(SliderHysteresis):
     """Four Maxwell-slip elements of equal limit whose slip twists grow by a constant factor.
 
     tau = sum(T_i),  L_i = T_h/4,  x_i = x_s q^((2 i - 5)/4),  k_i = L_i/x_i,  i = 1..4
@@ -35,13 +32,10 @@ class SpreadSlipHysteresis(MemoryTwistEffect):
     rounding: float = parameter("1", "part of each limit over which its corner is rounded", default=0.05, low=0.0, high=1.0)
     fastest_rate: float = parameter("1/s", "f, rate up to which the state is followed", default=FASTEST_RATE, above=0.0)
 
-    family: ClassVar[str] = "hysteresis"
-    dissipative: ClassVar[bool] = True
     signature: ClassVar[str] = "torque-twist loop that does not depend on speed, with closed inner loops and corners that are drawn out"
 
     @property
     def elements(self) -> MaxwellSlipHysteresis:
-        """The law with its elements written out."""
         limit = self.torque_limit / ELEMENTS
         places = [self.slip_twist * self.spread ** ((2 * k + 1) / ELEMENTS - 1.0) for k in range(ELEMENTS)]
         return MaxwellSlipHysteresis(
@@ -50,15 +44,3 @@ class SpreadSlipHysteresis(MemoryTwistEffect):
             rounding=self.rounding,
             fastest_rate=self.fastest_rate,
         )
-
-    def states(self) -> Mapping[str, str]:
-        return self.elements.states()
-
-    def state_rate(self, name: str, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
-        return self.elements.state_rate(name, time, twist, rate, state)
-
-    def torque(self, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
-        return self.elements.torque(time, twist, rate, state)
-
-    def stored(self, state: Mapping[str, Value]) -> Value:
-        return self.elements.stored(state)

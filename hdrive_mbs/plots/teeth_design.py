@@ -11,7 +11,8 @@ from matplotlib.patches import Patch
 
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import house_look, new_figure
-from hdrive_mbs.teeth.design import VARIABLES, DesignWindow
+from hdrive_mbs.teeth.design import DesignWindow
+from hdrive_mbs.teeth.design_points import VARIABLES
 
 SHORT = (
     "admissible",

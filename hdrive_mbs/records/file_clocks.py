@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from hdrive_mbs.errors import ParameterError, UnitError, unknown_place
-from hdrive_mbs.records.formats.file_format import Column, Contents, is_time
+from hdrive_mbs.records.formats.file_format import Column, Contents, check_width, is_time
 from hdrive_mbs.records.request import Request
 from hdrive_mbs.records.si_units import conversion
 
@@ -73,7 +74,7 @@ def by_clock(request: Request, contents: Contents) -> tuple[list[tuple[Clock, li
         if clock is None:
             left.append(column.name)
         else:
-            members.setdefault(clock, []).extend(flattened(column, len(clocks[clock].values)))
+            members.setdefault(clock, []).extend(flattened(request.path, column, len(clocks[clock].values)))
     return [
         (Clock(label=_label(clocks[index]), length=len(clocks[index].values), column=clocks[index]), found)
         for index, found in members.items()
@@ -101,7 +102,7 @@ def _even_clocks(request: Request, columns: Sequence[Column], step: float) -> tu
     members: dict[int, list[Column]] = {}
     for column in columns:
         length = max(column.values.shape)
-        members.setdefault(length, []).extend(flattened(column, length))
+        members.setdefault(length, []).extend(flattened(request.path, column, length))
     return [(Clock(label=f"{length} samples", length=length, step=step), found) for length, found in members.items()], []
 
 
@@ -112,11 +113,12 @@ def _nearest(column: Column, clocks: Sequence[Column], anywhere: bool) -> int | 
     return max(around, key=lambda index: (len(clocks[index].group), clocks[index].clock, -index), default=None)
 
 
-def flattened(column: Column, length: int) -> list[Column]:
+def flattened(path: Path, column: Column, length: int) -> list[Column]:
     """A matrix as channels ``name[1]``, ``name[2]``, ... of that length."""
     if column.values.ndim == 1:
         return [column]
     rows = column.values if column.values.shape[1] == length else column.values.T
+    check_width(path, range(len(rows)))
     return [
         Column(name=f"{column.name}[{index}]", unit=column.unit, values=row, group=column.group) for index, row in enumerate(rows, start=1)
     ]

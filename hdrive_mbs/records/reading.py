@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -79,7 +80,7 @@ def read_records(
     when all lack it.  Other arguments as in ``read_record``; names of ``noise`` and ``resolution`` that a
     record lacks are left out there.
     """
-    files = _files(paths)
+    files = record_files(paths)
     found: list[Record] = []
     for path in files:
         found.extend(_read(path, channels, units or {}, time, lenient=len(files) > 1))
@@ -110,7 +111,7 @@ def read_columns(
     file = Path(path)
     request = Request.of(file, channels, units or {}, None)
     contents = format_of(file).contents(file, request.wanted)
-    flat = [one for column in contents.columns for one in flattened(column, max(column.values.shape)) if request.selects(one.name)]
+    flat = [one for column in contents.columns for one in flattened(file, column, max(column.values.shape)) if request.selects(one.name)]
     request.check_selected(flat, contents)
     return {item.name: item for item in _measured(flat, request)}
 
@@ -139,7 +140,11 @@ def _run_names(files: Sequence[Path]) -> dict[str, str]:
     return {str(path): name for path, name in zip(files, names, strict=True)}
 
 
-def _files(paths: str | os.PathLike[str] | Iterable[str | os.PathLike[str]]) -> list[Path]:
+def record_files(paths: str | os.PathLike[str] | Iterable[str | os.PathLike[str]]) -> list[Path]:
+    """The files themselves; of a folder those whose suffix is that of a known format, by name.
+
+    Raises FileFormatError for a folder without any.
+    """
     given = [Path(paths)] if isinstance(paths, (str, os.PathLike)) else [Path(item) for item in paths]
     suffixes = {suffix for item in formats() for suffix in item.suffixes}
     files: list[Path] = []
@@ -228,7 +233,7 @@ def _no_time(path: Path, contents: Contents, left: Sequence[str]) -> str:
 def _measured(columns: Sequence[Column], request: Request) -> list[Measurement]:
     """Channels in SI units.  Raises UnitError that names every channel without a unit."""
     names = [column.name for column in columns]
-    twice = sorted({name for name in names if names.count(name) > 1})
+    twice = sorted(name for name, count in Counter(names).items() if count > 1)
     if twice:
         raise FileFormatError(
             f"{request.path}: {twice[0]!r} occurs {names.count(twice[0])} times over one time; such a name cannot be told apart."

@@ -6,9 +6,14 @@ import functools
 import re
 from dataclasses import dataclass
 
+import numpy as np
+
 from hdrive_mbs.errors import UnitError
 from hdrive_mbs.signals import FloatArray
 from hdrive_mbs.units import base_powers, factor
+
+LONGEST = 200
+"""Characters of a unit."""
 
 SI_UNITS = (
     "1", "s", "1/s", "Hz",
@@ -56,7 +61,10 @@ class Conversion:
 
     def apply(self, numbers: FloatArray) -> FloatArray:
         """Numbers of the file in SI."""
-        return numbers if self.factor == 1.0 and self.offset == 0.0 else numbers * self.factor + self.offset
+        if self.factor == 1.0 and self.offset == 0.0:
+            return numbers
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is found and told of later
+            return numbers * self.factor + self.offset
 
 
 def conversion(text: str, where: str) -> Conversion:
@@ -65,6 +73,8 @@ def conversion(text: str, where: str) -> Conversion:
     Raises UnitError for a unit that is unknown, ambiguous or measures nothing that a record can hold.
     """
     given = text.strip()
+    if len(given) > LONGEST:
+        raise UnitError(f"{where}: unit {given[:40]!r}... cannot be read: it has {len(given)} characters.")
     scaled = _SCALED.fullmatch(given)
     if scaled and not given.startswith("1/"):
         size = float(scaled.group(1))

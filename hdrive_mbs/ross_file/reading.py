@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import os
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from hdrive_mbs.documents import read_document
 from hdrive_mbs.errors import FileFormatError, HdriveError
 from hdrive_mbs.ross_file import elements
 from hdrive_mbs.ross_file.elements import Disc, Entry, LumpedMass, ShaftPiece, Support
@@ -86,16 +85,7 @@ def load_ross(path: str | os.PathLike[str], *, leave_out: Sequence[str] = (), na
 
 
 def _document(path: Path) -> dict[str, Any]:
-    try:
-        text = path.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        raise FileFormatError(f"{path}: cannot be read ({error.strerror or error}).") from error
-    except UnicodeDecodeError as error:
-        raise FileFormatError(f"{path} is not a text file in UTF-8 ({error}).") from error
-    try:
-        document = json.loads(text) if path.suffix.lower() == ".json" else tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise FileFormatError(f"{path} cannot be parsed: {error}") from error
+    document = read_document(path)
     if not isinstance(document, dict) or "parameters" not in document or not any(key.startswith("ShaftElement_") for key in document):
         raise FileFormatError(f"{path} is no rotor saved by ROSS: it has no table 'parameters' or no 'ShaftElement_...'.")
     return document

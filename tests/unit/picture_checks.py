@@ -1,11 +1,42 @@
-"""What pictures of the time-domain analyses are checked for."""
+"""What every picture is checked for."""
 
 from __future__ import annotations
 
+from typing import Any
+
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from tests.unit.test_plots import drawn, figure_of, ticks_outside
+from hdrive_mbs.plots.look import house_look
+
+
+def figure_of(ax: Axes) -> Figure:
+    figure = ax.figure.figure
+    assert isinstance(figure, Figure)
+    return figure
+
+
+def drawn(ax: Axes) -> Any:
+    """The renderer after the layout has been worked out."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    canvas = FigureCanvasAgg(figure_of(ax))
+    with house_look():
+        canvas.draw()
+    return canvas.get_renderer()
+
+
+def ticks_outside(figure: Figure) -> set[Any]:
+    """Labels of ticks outside the limits, which matplotlib keeps but does not draw."""
+    hidden = set()
+    for one in [*figure.axes, *(child for ax in figure.axes for child in ax.child_axes)]:
+        for axis, limits in ((one.xaxis, one.get_xlim()), (one.yaxis, one.get_ylim())):
+            low, high = sorted(limits)
+            for tick in axis.get_major_ticks() + axis.get_minor_ticks():
+                if not low <= tick.get_loc() <= high:
+                    hidden |= {tick.label1, tick.label2}
+    return hidden
 
 
 def written(ax: Axes) -> list[str]:

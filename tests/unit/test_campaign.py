@@ -18,9 +18,10 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.campaign.fingerprint import fingerprint, job_key
-from hdrive_mbs.campaign.local_processes import ONE_THREAD
 from hdrive_mbs.errors import ParameterError, PlaceError, SimulationError
+from hdrive_mbs.worker_process import ONE_THREAD
 from models.harmonic_drive_train import build
+from tests.patience import PATIENCE
 from tests.unit import campaign_jobs as jobs
 
 ROOT = Path(__file__).parents[2]
@@ -343,7 +344,9 @@ def test_what_cannot_be_run_is_refused_with_the_way_out() -> None:
 def test_a_script_without_the_guard_says_what_is_missing(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text("import hdrive_mbs as hm\ndef job(point):\n    return 1.0\nhm.sweep(job, [{'x': 1}], workers=1)\n")
-    done = subprocess.run([sys.executable, script], env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(
+        [sys.executable, script], env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=PATIENCE
+    )
     assert done.returncode == 1
     assert "needs the line if __name__ == '__main__':" in done.stderr.splitlines()[-1]
     assert SimulationError.__name__ in done.stderr

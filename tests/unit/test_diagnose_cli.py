@@ -30,6 +30,7 @@ from hdrive_mbs.diagnosis.result import Diagnosis
 from hdrive_mbs.errors import FileFormatError, RecordError
 from hdrive_mbs.scene_file import load_scene, save_scene
 from models import drive_bench
+from tests.patience import PATIENCE
 from tests.unit.diagnosis_samples import SAMPLES
 
 BENCH = """
@@ -184,7 +185,7 @@ def test_effects_of_an_own_file_are_tried_beside_the_library(asked: list[dict[st
 def test_other_processes_can_read_an_effect_of_an_own_file(path: list[str], tmp_path: Path) -> None:
     kind = own_effects(Path(written(tmp_path, SEAL_DRAG, "sent")))[0]
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
-        assert pool.submit(repr, kind(scale=0.3)).result(timeout=60) == repr(kind(scale=0.3))
+        assert pool.submit(repr, kind(scale=0.3)).result(timeout=PATIENCE) == repr(kind(scale=0.3))
 
 
 @pytest.mark.parametrize(

@@ -29,8 +29,7 @@ from hdrive_mbs.plots.diagnosis_ranking import plot_places, plot_ranking
 from hdrive_mbs.plots.diagnosis_traces import plot_residual, plot_traces
 from hdrive_mbs.plots.report_html import report_html, write_report_html
 from tests.unit.diagnosis_samples import NAN, SAMPLES, gaps
-from tests.unit.picture_checks import assert_nothing_is_cut_off, written
-from tests.unit.test_plots import figure_of
+from tests.unit.picture_checks import assert_nothing_is_cut_off, figure_of, written
 
 NEEDS: dict[str, tuple[Callable[..., Axes], str]] = {
     "gap": (plot_gap, "gaps"),

@@ -26,6 +26,7 @@ from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.effects.viscous_drag import ViscousDrag
+from tests.patience import PATIENCE
 from tests.unit import diagnosis_job as job
 from tests.unit.diagnosis_cases import bench, quiet, records
 
@@ -127,7 +128,7 @@ def test_a_killed_diagnosis_goes_on_from_its_folder_and_gives_the_same_answer(
     tmp_path: Path, whole: Diagnosis, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     process = started(tmp_path, "1", job.SECOND, "SIGKILL")
-    out, err = process.communicate(timeout=120)
+    out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == -signal.SIGKILL, err
     assert "stage" in out
     counter = Counter(monkeypatch)
@@ -215,7 +216,7 @@ def test_two_processes_give_the_answer_of_one_and_read_an_effect_from_its_file(t
 @pytest.mark.parametrize("number", ["SIGINT", "SIGKILL"])
 def test_no_process_is_left_when_a_diagnosis_is_interrupted(tmp_path: Path, number: str) -> None:
     process = started(tmp_path, "2", job.SECOND, number)
-    out, err = process.communicate(timeout=120)
+    out, err = process.communicate(timeout=PATIENCE)
     assert "stage" in out, err
     assert process.returncode != 0
     assert gone(process.pid), left_in_group(process.pid)
@@ -288,7 +289,7 @@ def test_an_effect_that_no_process_could_read_is_refused_with_the_way_out() -> N
 def test_a_script_without_its_main_line_is_told_so(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text("from hdrive_mbs.diagnosis.team import Team\nwith Team(2) as team:\n    team.map(max, 1, [1, 2])\n")
-    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=PATIENCE)
     assert "needs the line if __name__ == '__main__'" in done.stderr
 
 

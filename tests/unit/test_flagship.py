@@ -296,3 +296,15 @@ def test_an_unknown_bearing_model_is_refused() -> None:
 def test_the_joint_can_be_kept_in_a_file(tmp_path: object) -> None:
     scene = joint.build()
     assert hm.load_scene(hm.save_scene(scene, tmp_path / "joint.toml")) == scene  # type: ignore[operator]
+
+
+def test_five_bodies_turn_as_the_whole_line_does(run: hm.RunUp) -> None:
+    # springs in line are exact at rest; what is left is bending, and vibration of the bodies that were put together
+    scene = joint.torsional_line()
+    solver = hm.DormandPrince(relative_tolerance=1e-8, absolute_tolerance=1e-10)
+    response = hm.simulate(scene, 3.0, solver=solver, sample_step=1e-3, progress=False)
+    times = 1e-3 * np.arange(2900)
+    noise = {item.channel: item.noise for item in joint.MEASURED.values()}
+    for reading, channel in (("motor_encoder", "motor.angle"), ("output_encoder", "encoder_disc.angle"), ("motor.torque", "motor.torque")):
+        difference = response.at(reading, times) - np.interp(times, run.times, run.values[channel])
+        assert np.sqrt(np.mean(difference**2)) < noise[reading]

@@ -10,9 +10,8 @@ import pytest
 from matplotlib.figure import Figure
 
 import hdrive_mbs as hm
-from tests.unit.picture_checks import assert_nothing_is_cut_off
+from tests.unit.picture_checks import assert_nothing_is_cut_off, figure_of
 from tests.unit.rotor_scenes import CRITICAL, DAMPING, ECCENTRICITY, MASS, STIFFNESS, constant, jeffcott, made, steady
-from tests.unit.test_plots import figure_of
 
 ACCELERATION = 40.0
 

@@ -8,7 +8,6 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import matplotlib
 import numpy as np
@@ -17,9 +16,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import hdrive_mbs as hm
-from hdrive_mbs.plots.look import COLOURS, LINES, house_look
+from hdrive_mbs.plots.look import COLOURS, LINES
 from hdrive_mbs.plots.thinning import thinned
 from models.harmonic_drive_train import build
+from tests.unit.picture_checks import assert_nothing_is_cut_off, drawn, figure_of
 
 
 @functools.cache
@@ -55,22 +55,6 @@ made = functools.cache(lambda name: RESULTS[name]())
 DRAWS_AMPLITUDES = {"spectrum", "order spectrum", "modes", "reduction"}
 
 
-def figure_of(ax: Axes) -> Figure:
-    figure = ax.figure.figure
-    assert isinstance(figure, Figure)
-    return figure
-
-
-def drawn(ax: Axes) -> Any:
-    """The renderer after the layout has been worked out."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    canvas = FigureCanvasAgg(figure_of(ax))
-    with house_look():
-        canvas.draw()
-    return canvas.get_renderer()
-
-
 def texts(ax: Axes) -> list[str]:
     """Axis labels of the axes and of their second scales, on the whole figure."""
     every = [*figure_of(ax).axes, *(child for one in figure_of(ax).axes for child in one.child_axes)]
@@ -100,31 +84,7 @@ def test_every_amplitude_says_that_it_is_0_peak(name: str) -> None:
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_nothing_is_cut_off_at_the_edge_of_the_picture(name: str) -> None:
-    ax = hm.plot(made(name))
-    renderer = drawn(ax)
-    figure = figure_of(ax)
-    width, height = figure.canvas.get_width_height()
-    outside = ticks_outside(figure)
-    for text in figure.findobj(matplotlib.text.Text):
-        if not text.get_visible() or not text.get_text().strip() or text in outside:
-            continue
-        box = text.get_window_extent(renderer)
-        assert box.x0 > -2.0, text.get_text()
-        assert box.x1 < width + 2.0, text.get_text()
-        assert box.y0 > -2.0, text.get_text()
-        assert box.y1 < height + 2.0, text.get_text()
-
-
-def ticks_outside(figure: Figure) -> set[Any]:
-    """Labels of ticks outside the limits, which matplotlib keeps but does not draw."""
-    hidden = set()
-    for one in [*figure.axes, *(child for ax in figure.axes for child in ax.child_axes)]:
-        for axis, limits in ((one.xaxis, one.get_xlim()), (one.yaxis, one.get_ylim())):
-            low, high = sorted(limits)
-            for tick in axis.get_major_ticks() + axis.get_minor_ticks():
-                if not low <= tick.get_loc() <= high:
-                    hidden |= {tick.label1, tick.label2}
-    return hidden
+    assert_nothing_is_cut_off(hm.plot(made(name)))
 
 
 @pytest.mark.parametrize("name", RESULTS)

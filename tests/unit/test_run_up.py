@@ -20,9 +20,8 @@ from hdrive_mbs.analysis.run_up.speed_peaks import Whirl, speed_peaks
 from hdrive_mbs.analysis.unbalance.synchronous_whirl import CriticalSpeed, critical_speeds
 from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 from models.two_rotor_line import build
-from tests.unit.picture_checks import assert_nothing_is_cut_off
+from tests.unit.picture_checks import assert_nothing_is_cut_off, figure_of
 from tests.unit.rotor_scenes import CRITICAL, DAMPING, ECCENTRICITY, MASS, POLAR, STIFFNESS, constant, holding, jeffcott, steady, support
-from tests.unit.test_plots import figure_of
 from tests.verification.reference_sommerfeld import SpinUp, UnbalancedDisc, spin_up
 
 ACCURACY = 1e-3

@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 import hdrive_mbs as hm
 from hdrive_mbs.cli.main import app
 from models.two_rotor_line import build
+from tests.patience import PATIENCE
 
 LINE = str(Path(__file__).parents[2] / "models" / "two_rotor_line.py")
 
@@ -115,7 +116,7 @@ def test_a_foreseen_error_is_one_line_with_exit_code_2(tmp_path: Path) -> None:
         (["run-up", train, "--out", str(tmp_path)], "only turns; use start_up"),
         (["run-up", LINE, "--duration", "-1", "--out", str(tmp_path)], "duration = -1.0 s: must be greater than 0 s"),
     ):
-        done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, timeout=60)
+        done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True, timeout=PATIENCE)
         assert done.returncode == 2
         assert message in done.stderr
         assert "Traceback" not in done.stderr

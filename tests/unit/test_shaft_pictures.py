@@ -10,8 +10,7 @@ from matplotlib.axes import Axes
 
 import hdrive_mbs as hm
 from hdrive_mbs.plots.shafts import drive_order, shaft_numbers
-from tests.unit.picture_checks import assert_nothing_is_cut_off
-from tests.unit.test_plots import figure_of
+from tests.unit.picture_checks import assert_nothing_is_cut_off, figure_of
 
 LAW = hm.LinearBearing.isotropic(radial=4e7, damping=500.0, axial=1e8, tilt=1e3)
 RING = hm.Bearing(law=LAW, mass=0.3, polar_inertia=2e-4, transverse_inertia=2e-4)

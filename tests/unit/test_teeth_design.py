@@ -11,7 +11,8 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.errors import ParameterError, PlaceError
 from hdrive_mbs.teeth.amplitude_window import amplitude_window
-from hdrive_mbs.teeth.design import REASONS, VARIABLES, common_amplitude
+from hdrive_mbs.teeth.design import common_amplitude
+from hdrive_mbs.teeth.design_points import REASONS, VARIABLES
 from models.double_harmonic_transmission import gear
 
 TASK = hm.DesignTask(

@@ -15,6 +15,7 @@ import hdrive_mbs as hm
 from hdrive_mbs.cli.main import app
 from hdrive_mbs.errors import ParameterError, PlaceError
 from models.two_rotor_line import build
+from tests.patience import PATIENCE
 
 LINE = str(Path(__file__).parents[2] / "models" / "two_rotor_line.py")
 
@@ -94,7 +95,7 @@ def test_an_unknown_place_is_named() -> None:
 def test_a_foreseen_error_ends_with_exit_code_2_and_one_line() -> None:
     code = "import sys; from hdrive_mbs.cli.main import main; main()"
     arguments = [sys.executable, "-c", code, "unbalance", LINE, "--speeds", "9:1:3"]
-    done = subprocess.run(arguments, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(arguments, capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode == 2
     assert done.stderr.startswith("error: --speeds '9:1:3'")
     assert "Traceback" not in done.stderr

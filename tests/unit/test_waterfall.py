@@ -10,9 +10,8 @@ import pytest
 from matplotlib.figure import Figure
 
 import hdrive_mbs as hm
-from tests.unit.picture_checks import assert_nothing_is_cut_off, written
+from tests.unit.picture_checks import assert_nothing_is_cut_off, figure_of, written
 from tests.unit.rotor_scenes import CRITICAL, constant, jeffcott, made
-from tests.unit.test_plots import figure_of
 
 TURN = 2.0 * np.pi
 ACCELERATION = 50.0

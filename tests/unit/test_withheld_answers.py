@@ -109,6 +109,14 @@ def test_lost_motion_out_of_tolerance_is_an_effect_there() -> None:
     assert (answer["verdict"], claimed(answer)) == ("effect", [("lost_motion", "flexspline")])
 
 
+def test_one_cause_at_both_bearings_is_at_the_bearings() -> None:
+    names = names_of("rotor")
+    stiff, rough = "bearing_cubic_stiffness", "ball_pass"
+    assert names.joined([((stiff, "bearing_2"), 2), ((stiff, "bearing_1"), 1)]) == [((stiff, "bearings"), 2)]
+    for two in ([((stiff, "bearing_2"), 2), ((rough, "bearing_1"), 1)], [((stiff, "rotor_1"), 2), ((stiff, "bearing_1"), 1)]):
+        assert names.joined(two) == two
+
+
 def test_a_cause_without_a_name_is_unknown_at_its_place() -> None:
     where = {"motor": 0.7, "gear": 0.2}
     answer = answer_of("drive-c01", finding("effect", ("thermal_drift", "load"), where=where), DRIVE)

@@ -7,20 +7,14 @@ Scene, noise and resolution are those of models/drive_bench.py.
 
 from __future__ import annotations
 
-import json
 import math
-import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import hdrive_mbs as hm
 from models import drive_bench
-
-SHARED = Path(__file__).parents[3] / "shared" / "withheld"
-CASE = SHARED / "practice" / "drive-p01"
-pytestmark = pytest.mark.skipif(not CASE.is_dir(), reason="the shared bench records are not beside this checkout")
+from tests.verification.practice_case import PracticeCase, data_sheet
 
 SYMBOLS = {
     "J_m": "motor_inertia",
@@ -38,23 +32,13 @@ SYMBOLS = {
     "J_l": "load_inertia",
     "b_l": "load_viscous",
 }
-"""Symbol of the maker -> parameter of the model."""
-
-
-def true_parameters() -> dict[str, float]:
-    values = json.loads((CASE / "truth.json").read_text())["true_parameters"]
-    return {name: values[symbol] for symbol, name in SYMBOLS.items()}
-
-
-def columns(record: str) -> dict[str, np.ndarray]:
-    parquet = pytest.importorskip("pyarrow.parquet", reason="pyarrow reads the records")
-    table = parquet.read_table(CASE / f"{record}.parquet")
-    return {name: table[name].to_numpy().astype(float) for name in table.column_names}
+CASE = PracticeCase(name="drive-p01", symbols=SYMBOLS)
+pytestmark = CASE.needed
 
 
 def run(data: dict[str, np.ndarray], **drive: drive_bench.Table) -> hm.Response:
     times = data["time"]
-    scene = drive_bench.build(load_torque=(times, data["load_torque"]), **drive, **true_parameters())
+    scene = drive_bench.build(load_torque=(times, data["load_torque"]), **drive, **CASE.true_parameters())
     response = hm.simulate(scene, float(times[-1]), solver=drive_bench.SOLVER, sample_step=drive_bench.SAMPLE_TIME)
     assert set(response.lowering.values()) <= {"native", "symbolic"}
     return response
@@ -62,7 +46,7 @@ def run(data: dict[str, np.ndarray], **drive: drive_bench.Table) -> hm.Response:
 
 @pytest.mark.parametrize("record", ["staircase", "load_cycle", "sweep"])
 def test_a_bench_without_hidden_effect_is_reproduced_to_its_noise(record: str) -> None:
-    data = columns(record)
+    data = CASE.columns(record)
     response = run(data, speed_reference=(data["time"], data["speed_reference"]))
     for column, sigma in drive_bench.noise().items():
         residual = data[column] - response[drive_bench.CHANNELS[column]].at(data["time"])
@@ -74,9 +58,9 @@ def test_a_bench_without_hidden_effect_is_reproduced_to_its_noise(record: str) -
 
 
 def test_driven_by_its_measured_torque_the_noise_adds_up_in_the_angles_and_hardly_in_the_output_torque() -> None:
-    data = columns("load_cycle")
+    data = CASE.columns("load_cycle")
     response = run(data, motor_torque=(data["time"], data["motor_torque"]))
-    p, u = true_parameters(), drive_bench.RATIO
+    p, u = CASE.true_parameters(), drive_bench.RATIO
     sigma, step = drive_bench.noise(), drive_bench.SAMPLE_TIME
 
     # white torque noise on J dw/dt + b w = T: each sample turns the train by s h/b (1 - exp(-t b/J)) until t later
@@ -104,7 +88,7 @@ def test_driven_by_its_measured_torque_the_noise_adds_up_in_the_angles_and_hardl
 
 
 def test_the_model_has_the_numbers_of_the_data_sheet() -> None:
-    sheet = tomllib.loads((SHARED / "drive_bench.toml").read_text())
+    sheet = data_sheet("drive")
     scene = drive_bench.build(speed_reference=((0.0, 1.0), (0.0, 1.0)))
     values = {path: item.value for path, item in scene.parameters().items()}
     gear = sheet["flexspline"]

@@ -8,20 +8,14 @@ deviation over n samples is known to 1/sqrt(2 n); four of these are the toleranc
 
 from __future__ import annotations
 
-import json
 import math
-import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import hdrive_mbs as hm
 from models import rotor_bench
-
-SHARED = Path(__file__).parents[3] / "shared" / "withheld"
-CASE = SHARED / "practice" / "rotor-p01"
-pytestmark = pytest.mark.skipif(not CASE.is_dir(), reason="the shared bench records are not beside this checkout")
+from tests.verification.practice_case import PracticeCase, data_sheet
 
 SYMBOLS = {
     "E": "youngs_modulus",
@@ -48,18 +42,8 @@ SYMBOLS = {
     "k_hy": "support_stiffness_y",
     "d_h": "support_damping",
 }
-"""Symbol of the maker -> parameter of the model."""
-
-
-def true_parameters() -> dict[str, float]:
-    values = json.loads((CASE / "truth.json").read_text())["true_parameters"]
-    return {name: values[symbol] for symbol, name in SYMBOLS.items()}
-
-
-def columns(record: str) -> dict[str, np.ndarray]:
-    parquet = pytest.importorskip("pyarrow.parquet", reason="pyarrow reads the records")
-    table = parquet.read_table(CASE / f"{record}.parquet")
-    return {name: table[name].to_numpy().astype(float) for name in table.column_names}
+CASE = PracticeCase(name="rotor-p01", symbols=SYMBOLS)
+pytestmark = CASE.needed
 
 
 def simulated(record: str, scene: hm.Scene, samples: int) -> hm.Response:
@@ -87,10 +71,10 @@ LATERAL = tuple(name for name in rotor_bench.CHANNELS if name.startswith(("r", "
 
 @pytest.mark.parametrize("record", ["run_up", "steps", "bump"])
 def test_a_bench_without_hidden_effect_is_reproduced_to_its_noise(record: str) -> None:
-    data = columns(record)
+    data = CASE.columns(record)
     samples = len(data["time"])
     assert np.allclose(data["time"], rotor_bench.sample_times(record), rtol=0.0, atol=1e-12)
-    response = simulated(record, rotor_bench.build(record, **true_parameters()), samples)
+    response = simulated(record, rotor_bench.build(record, **CASE.true_parameters()), samples)
     for column in (*LATERAL, "motor_torque"):
         assert misfit(column, data, response) == pytest.approx(1.0, abs=white(samples)), column
     if record == "bump":  # the weight of the eccentric rotors turns the standing shaft by less than half a count
@@ -104,9 +88,9 @@ def test_a_bench_without_hidden_effect_is_reproduced_to_its_noise(record: str) -
 
 
 def test_driven_by_its_measured_spin_a_wrong_drag_does_not_matter() -> None:
-    data = {name: values[:8000] for name, values in columns("run_up").items()}  # through the first critical speed
+    data = {name: values[:8000] for name, values in CASE.columns("run_up").items()}  # through the first critical speed
     times = data["time"]
-    true = true_parameters()
+    true = CASE.true_parameters()
     wrong = true | {"drag": 1.5 * true["drag"]}
     (angles, speeds, _), (lagging, _, _) = (rotor_bench.held_control("run_up", rotor_bench.undriven("run_up", **p)) for p in (true, wrong))
     # four drags c, each too large by half, are 2 c w more torque: k u + J u' = 2 c w for the speed u that is lost, so the
@@ -123,7 +107,7 @@ def test_driven_by_its_measured_spin_a_wrong_drag_does_not_matter() -> None:
 
 
 def test_the_model_has_the_numbers_of_the_data_sheet() -> None:
-    sheet = tomllib.loads((SHARED / "rotor_bench.toml").read_text())
+    sheet = data_sheet("rotor")
     scene = rotor_bench.build("steps")
     values = {path: item.value for path, item in scene.parameters().items()}
     shaft, bearing, support = sheet["shaft"], sheet["bearing"], sheet["support"]

@@ -1,6 +1,6 @@
 """Readers that run in a process of their own.
 
-The libraries for MATLAB and MDF files are partly written in C and can crash on a damaged file, which
+The libraries for HDF5, MATLAB and MDF files are partly written in C and can crash on a damaged file, which
 would end the user's session; they can also run for ever.  Here that ends a child process, and the user
 gets an error.
 """
@@ -17,12 +17,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hdrive_mbs.errors import FileFormatError
+from hdrive_mbs.memory_limit import largest
 
 if TYPE_CHECKING:
     from hdrive_mbs.records.formats.file_format import Contents, Format, Wanted
 
 TIME_LIMIT, RATE = 60.0, 1e6
 """Seconds for any file, and bytes a second more."""
+
+SMALLEST_BOUND = 2**32
+"""Bytes of address space that any reader may have: libraries and their threads claim some."""
 
 _PROGRAM = "import sys; sys.path.insert(0, sys.argv[1]); from hdrive_mbs.records.formats.apart import main; main(*sys.argv[2:])"
 
@@ -69,6 +73,7 @@ def main(name: str, path: str, patterns: str, target: str) -> None:
     """The child: read the file and write its columns, or the reason why not."""
     from hdrive_mbs.records.formats.file_format import Wanted, formats
 
+    _bound_memory()
     file_format = next(item for item in formats() if item.name == name)
     chosen = json.loads(patterns)
     head: dict[str, Any]
@@ -77,6 +82,9 @@ def main(name: str, path: str, patterns: str, target: str) -> None:
     except FileFormatError as error:
         _write(target, {"error": str(error)}, {})
         return
+    except MemoryError:
+        _write(target, {"error": f"{path} unfolds to more than half of this machine's memory; it seems damaged."}, {})
+        return
     kept = ("name", "unit", "group", "clock")
     head = {
         "columns": [{key: getattr(column, key) for key in kept} for column in contents.columns],
@@ -84,6 +92,16 @@ def main(name: str, path: str, patterns: str, target: str) -> None:
         "notes": list(contents.notes),
     }
     _write(target, head, {f"values_{index}": np.asarray(column.values) for index, column in enumerate(contents.columns)})
+
+
+def _bound_memory() -> None:
+    """Let a file that unfolds to more than the memory fail here, and not the user's other programs."""
+    try:
+        import resource
+    except ImportError:
+        return
+    bound = max(largest(), SMALLEST_BOUND)
+    resource.setrlimit(resource.RLIMIT_AS, (bound, bound))
 
 
 def _write(target: str, head: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:

@@ -18,6 +18,9 @@ import numpy.typing as npt
 
 from hdrive_mbs.errors import FileFormatError
 
+LONGEST_NAME = 500
+"""Characters of a heading in which a unit is looked for."""
+
 MOST_COLUMNS = 10_000
 """More columns than any logger writes: a sign of a file that is something else."""
 
@@ -183,6 +186,8 @@ _PARENTHESISED = re.compile(r"^(.*?)\s*\(\s*([^()]*(?:\([^()]*\)[^()]*)*)\)\s*$"
 def named_unit(heading: str, is_unit: Callable[[str], bool]) -> tuple[str, str | None]:
     """``"speed [rpm]"`` or ``"speed (rpm)"`` -> ("speed", "rpm"); in parentheses only what is a unit counts."""
     text = heading.strip()
+    if len(text) > LONGEST_NAME:
+        return text, None
     match = _BRACKETED.match(text)
     if match and match.group(1):
         return match.group(1), match.group(2) or "1"

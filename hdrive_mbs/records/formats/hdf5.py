@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from hdrive_mbs.errors import FileFormatError
+from hdrive_mbs.memory_limit import check_claim
 from hdrive_mbs.records.formats.file_format import Column, Contents, Format, Wanted, broken, check_width, named_unit, real_numbers
 from hdrive_mbs.records.si_units import is_unit
 
@@ -19,6 +21,9 @@ DEEPEST = 12
 
 LARGEST = 2**31
 """Bytes of one dataset; a few bytes of file can claim any size."""
+
+FEWER = "Read fewer of its columns with channels=[...], or mend the file."
+"""What to do with a file that is too large for the memory."""
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
@@ -31,11 +36,14 @@ def read(path: Path, wanted: Wanted) -> Contents:
     columns: list[Column] = []
     try:
         with h5py.File(path, "r") as file:
+            chosen = []
             for parts, data in datasets(file, skipped):
                 last, unit = named_unit(parts[-1], is_unit)
                 name = "/".join((*parts[:-1], last))
-                if not wanted(name):
-                    continue
+                if wanted(name):
+                    chosen.append((parts, name, unit, data))
+            check_claim(path, sum(claim(data) for *_, data in chosen), FEWER)
+            for parts, name, unit, data in chosen:
                 if data.dtype.kind not in "biuf" or not data.shape:
                     skipped[name] = "a single value" if not data.shape else real_numbers(np.empty(1, data.dtype))
                     continue
@@ -46,6 +54,8 @@ def read(path: Path, wanted: Wanted) -> Contents:
                     continue
                 unit = attribute_text(data, "unit") or attribute_text(data, "units") or unit
                 columns.append(Column(name=name, unit=unit, values=values, group=parts[:-1]))
+    except FileFormatError:
+        raise
     except Exception as error:  # h5py raises many kinds for a damaged file
         raise broken(path, "HDF5", error) from error
     check_width(path, columns)
@@ -82,6 +92,11 @@ def datasets(group: Any, skipped: dict[str, str], parts: tuple[str, ...] = ()) -
                     waiting.append((path, item))
 
 
+def claim(data: Any) -> int:
+    """Bytes that a dataset takes when it is read."""
+    return int(data.dtype.itemsize) * int(data.size or 0)
+
+
 def attribute_text(item: Any, name: str) -> str | None:
     """A text attribute; None where it is missing or no text."""
     if name not in item.attrs:
@@ -94,5 +109,10 @@ def attribute_text(item: Any, name: str) -> str | None:
 
 
 FORMAT = Format(
-    name="HDF5", suffixes=(".h5", ".hdf5", ".hdf"), recognises=lambda head: head.startswith(SIGNATURE), read=read, needs=("h5py",)
+    name="HDF5",
+    suffixes=(".h5", ".hdf5", ".hdf"),
+    recognises=lambda head: head.startswith(SIGNATURE),
+    read=read,
+    needs=("h5py",),
+    apart=True,
 )

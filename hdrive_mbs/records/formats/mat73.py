@@ -10,8 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
+from hdrive_mbs.errors import FileFormatError
+from hdrive_mbs.memory_limit import check_claim
 from hdrive_mbs.records.formats.file_format import Column, Contents, Format, Wanted, broken, check_width, real_numbers
-from hdrive_mbs.records.formats.hdf5 import attribute_text, datasets
+from hdrive_mbs.records.formats.hdf5 import FEWER, attribute_text, claim, datasets
 from hdrive_mbs.records.formats.mat import UNITS, VALUES
 
 
@@ -26,6 +28,7 @@ def read(path: Path, wanted: Wanted) -> Contents:
         with h5py.File(path, "r") as file:
             texts = {}
             found = list(datasets(file, skipped))
+            check_claim(path, sum(claim(data) for parts, data in found if wanted(".".join(parts)) or wanted(".".join(parts[:-1]))), FEWER)
             for parts, data in found:
                 if attribute_text(data, "MATLAB_class") == "char" and parts[-1] in UNITS and data.size < 200:
                     texts[parts[:-1]] = "".join(chr(code) for code in np.asarray(data).ravel())
@@ -47,6 +50,8 @@ def read(path: Path, wanted: Wanted) -> Contents:
                     else:
                         group = parts[:-2] if whole else parts[:-1]
                         columns.append(Column(name=name, unit=texts.get(parts[:-1]) if whole else None, values=values, group=group))
+    except FileFormatError:
+        raise
     except Exception as error:  # h5py raises many kinds for a damaged file
         raise broken(path, "MATLAB 7.3", error) from error
     check_width(path, columns)
@@ -59,4 +64,5 @@ FORMAT = Format(
     recognises=lambda head: head.startswith(b"MATLAB 7.3 MAT-file"),
     read=read,
     needs=("h5py",),
+    apart=True,
 )

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from hdrive_mbs.memory_limit import check_claim
 from hdrive_mbs.records.formats.file_format import Column, Contents, Format, Wanted, broken, check_width, named_unit
 from hdrive_mbs.records.si_units import is_unit
 
@@ -23,7 +25,8 @@ def read(path: Path, wanted: Wanted) -> Contents:
         with parquet.ParquetFile(path) as file:
             schema = file.schema_arrow
             check_width(path, schema.names)
-            repeated = sorted({name for name in schema.names if schema.names.count(name) > 1})
+            chosen: list[tuple[str, str, str | None]] = []
+            repeated = sorted(name for name, count in Counter(schema.names).items() if count > 1)
             for name in repeated:
                 skipped[name] = "a name that occurs more than once"
             for field in schema:
@@ -42,7 +45,11 @@ def read(path: Path, wanted: Wanted) -> Contents:
                 ):
                     skipped[heading] = f"values of type {field.type}"
                     continue
-                columns.append(Column(name=heading, unit=unit, values=_numbers(file.read(columns=[field.name]), types)))
+                chosen.append((field.name, heading, unit))
+            claimed = 8 * file.metadata.num_rows * len(chosen)
+            check_claim(path, claimed, "Read fewer of its columns with channels=[...], or mend the file.")
+            for name, heading, unit in chosen:
+                columns.append(Column(name=heading, unit=unit, values=_numbers(file.read(columns=[name]), types)))
     except Exception as error:  # pyarrow raises kinds of its own
         if type(error).__module__.startswith("hdrive_mbs"):
             raise
