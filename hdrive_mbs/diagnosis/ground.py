@@ -13,18 +13,9 @@ from hdrive_mbs.diagnosis.simulator import Simulator
 FloatArray = npt.NDArray[np.float64]
 
 
-class Ground:
-    """A model at a point, with its Jacobian there.
-
-    screen : looks at candidates from it
-    plain : cost that one linear step of its own parameters reaches: what a candidate has to beat
-    """
-
-    def __init__(self, simulator: Simulator, model: Fitted) -> None:
-        columns = jacobian(simulator, model.hypothesis, model.z, model.residuals)
-        self.screen = Screen(simulator, model, columns)
-        own = self.screen.look((model.hypothesis,))
-        self.plain = model.cost if own is None else min(own.cost, model.cost)
+def screen_from(simulator: Simulator, model: Fitted) -> Screen:
+    """Looks at candidates from a model at a point, with its Jacobian there."""
+    return Screen(simulator, model, jacobian(simulator, model.hypothesis, model.z, model.residuals))
 
 
 def reset(simulator: Simulator, model: Fitted) -> Fitted:

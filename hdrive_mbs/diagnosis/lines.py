@@ -60,6 +60,7 @@ class Lines:
         for family in self._families:
             scenes = [self._trials[k].scene for k in family]
             family.sort(key=lambda k: -sum(scene is self._trials[k].scene for scene in scenes))
+        self._followed: set[int] = set()
         self._inputs: dict[int, list[str]] = {}
         for family in self._families:
             first = self._trials[family[0]].scene
@@ -96,7 +97,7 @@ class Lines:
             trial = self._trials[k]
             view = (*sorted(trial.motions), "/", *_channels(trial))
             if view not in bases:
-                bases[view] = k, [None if network is None else _compiled(network, trial) for network in networks]
+                bases[view] = k, [self._compiled(network, k) for network in networks]
             of, lines = bases[view]
             if of != k or trial.scene is not scene:
                 lines = [self._taking(k, line, hypothesis, point) for line, point in zip(lines, points, strict=True)]
@@ -124,8 +125,23 @@ class Lines:
         return own if own is not None else self._own(k, hypothesis, point)
 
     def _own(self, k: int, hypothesis: Hypothesis, point: FloatArray) -> CompiledLine | None:
-        network = _network(hypothesis, self._trials[k].scene, point)
-        return None if network is None else _compiled(network, self._trials[k])
+        return self._compiled(_network(hypothesis, self._trials[k].scene, point), k)
+
+    def _compiled(self, network: Network | None, k: int) -> CompiledLine | None:
+        """The line of trial k; None for values with which no compiled run can follow it, like a weight that makes a disc uneven.
+
+        Raises ParameterError where none can follow the scene as it was given.
+        """
+        if network is None:
+            return None
+        trial = self._trials[k]
+        try:
+            return _compiled(network, trial)
+        except ParameterError:
+            if k not in self._followed:
+                _compiled(trial.scene.network(), trial)
+                self._followed.add(k)
+            return None
 
 
 @contextmanager

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.evidence import log_evidence
 from hdrive_mbs.diagnosis.fit import Fitted, fit
-from hdrive_mbs.diagnosis.ground import Ground, as_known, reset
+from hdrive_mbs.diagnosis.ground import as_known, reset, screen_from
 from hdrive_mbs.diagnosis.hops import settled
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.screening import Look, Screen
@@ -191,14 +191,17 @@ class _Work:
 
     def from_ground(self, model: Fitted, base: Fitted, everything: Sequence[Suspect]) -> tuple[list[Found], dict[str, float]]:
         """What is found from a model at some point, best first, and the cost of the first looks."""
-        ground = Ground(self.simulator, model)
+        screen = screen_from(self.simulator, model)
         simple = _simplest(everything)
-        first = self._looked(ground.screen, simple, [item.first for item in simple], "looking at candidates")
-        chosen = [suspect.label for suspect, _ in first[: _worth(ground.plain, [look.cost for _, look in first], self.how.brief)]]
+        plain = Suspect(("none", ""), "none", (model.hypothesis,), (model.hypothesis,))
+        first = self._looked(screen, [plain, *simple], [item.first for item in (plain, *simple)], "looking at candidates")
+        before = min([model.cost, *(look.cost for suspect, look in first if suspect is plain)])
+        first = [pair for pair in first if pair[0] is not plain]
+        chosen = [suspect.label for suspect, _ in first[: _worth(before, [look.cost for _, look in first], self.how.brief)]]
         closer = [pair for pair in first if pair[0].label in chosen]
         if self.how.laws > 1:
             laws = [suspect for suspect in everything if suspect.label in chosen]
-            closer = self._looked(ground.screen, laws, [item.all for item in laws], "looking closer")
+            closer = self._looked(screen, laws, [item.all for item in laws], "looking closer")
         picked = _picked(closer, laws=self.how.laws)[: self.how.picked]
         tasks = [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE)) for suspect, look in picked]
         brief = _cheapest(self.fitted(tasks, "a few joint steps"))

@@ -51,7 +51,7 @@ def test_json_has_exactly_the_agreed_form_and_the_numbers_of_the_api(scene: str,
     call("campbell", scene, "--speeds", "0:400:21", "--orders", "1,2", "--count", "4", "--json", str(tmp_path / "c.json"))
     written = json.loads((tmp_path / "c.json").read_text())
     result = hm.campbell(overhung_disc(), np.linspace(0.0, 400.0, 21), (1, 2), count=4)
-    assert set(written) == {"speeds", "branches", "critical_speeds"}
+    assert set(written) == {"speeds", "branches", "critical_speeds", "origin"}
     assert written["speeds"] == pytest.approx(np.linspace(0.0, 400.0, 21).tolist())
     assert len(written["branches"]) == 4
     for k, branch in enumerate(written["branches"]):
