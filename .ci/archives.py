@@ -15,7 +15,7 @@ OFTEN_FORGOTTEN = {
     "hdrive_mbs/py.typed",
     "hdrive_mbs/__init__.pyi",
     "hdrive_mbs/data/robot_joint_line.py",
-    "hdrive_mbs/data/robot_joint_line/swings.csv",
+    "hdrive_mbs/data/robot_joint_line/to_and_fro.csv",
 }
 
 
