@@ -172,7 +172,7 @@ class Described:
             cls.__doc__ = "\n".join([inspect.cleandoc(cls.__doc__), "", FIELDS, *lines])
 
     def __new__(cls, *values: Any, **fields: Any) -> Self:
-        known, needed = _names(cls)  # type: ignore[arg-type]  # classes can be hashed
+        known, needed = _names(cls)
         if values:
             raise KeywordError(f"{cls.__name__}({values[0]!r}): values are given by name. It has: {', '.join(known)}.")
         for name in fields:
@@ -191,7 +191,7 @@ class Described:
         return _without_fields, (type(self),), self.__dict__
 
     def __post_init__(self) -> None:
-        for field, quantity in _checked(type(self)):  # type: ignore[arg-type]
+        for field, quantity in _checked(type(self)):
             value = getattr(self, field.name)
             if type(value) is float and quantity is not None and not quantity.sequence and quantity.allows(value):
                 continue
