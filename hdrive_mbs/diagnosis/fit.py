@@ -27,8 +27,10 @@ the strongly determined ones are as narrow as they are, and then a part of the s
 power below 1 the stretches that fit worst count for more than the misfit says."""
 DAMPED = ((1.0, 1e-2), (1.0, 0.3), (1.0, 5.0), (0.5, 3e-2), (0.0, 0.1))
 """Power of the weights, and times the damping at hand: tried besides."""
-AS_PROMISED = 0.6
-"""Share of what the whole undamped step promises at which it is taken without trying others."""
+AS_PROMISED, WELL_PROMISED = 0.6, (0.8, 1.3)
+"""Shares of what the whole undamped step promises: from the first on it is taken without trying others, and between the
+other two the Jacobian was good enough to be mended by what the step showed, in place of new differences."""
+TINY = 1e-300
 CHANGE, CAUTIOUS = 5.0, 0.15
 """Change of the residuals (root of their sum of squares) that a difference makes, and share of the longest step it may take."""
 
@@ -132,26 +134,33 @@ def fit(
     history = [cost]
     damping, converged, done = 1.0, len(z) == 0, 0  # nothing to search: it is there
     curvature = np.zeros((len(z), len(z)))
+    columns: FloatArray | None = None
+    fresh = True  # of differences at this very point
     for _ in range(0 if converged else steps):
-        columns = jacobian(simulator, hypothesis, z, residuals)
+        if columns is None:
+            columns, fresh = jacobian(simulator, hypothesis, z, residuals), True
         weights = simulator.blocks.weights(residuals[mask])
         systems = {}
         for power, _ in SHORTER:
             weighted = columns * (weights**power)[:, None]
             systems[power] = weighted.T @ columns, weighted.T @ residuals[mask] + precisions * z
-        curvature = systems[1.0][0]
+        curvature = systems[1.0][0] if fresh else curvature
         points = _proposals(hypothesis, z, precisions, systems, damping)
         found, costs = [], []
         for some in (points[:1], points[1:]):
             runs = simulator.residuals(hypothesis, [point for point, _ in some])
             found += runs
             costs += [np.inf if item is None else cost_of(item, point) for item, (point, _) in zip(runs, some, strict=True)]
-            if cost - costs[0] > AS_PROMISED * _promised(points[0][0] - z, *systems[1.0], precisions):
+            kept_promise = (cost - costs[0]) / max(_promised(points[0][0] - z, *systems[1.0], precisions), TINY)
+            if kept_promise > AS_PROMISED:
                 break
         done += 1
         best = int(np.argmin(costs))
         chosen = found[best]
         if chosen is None or costs[best] >= cost:
+            if not fresh:
+                columns = None
+                continue
             if damping > 1e4:
                 converged = True
                 break
@@ -160,11 +169,17 @@ def fit(
         gain = cost - costs[best]
         factor = points[best][1]
         damping = min(max(damping * (30.0 if factor >= 5.0 else 1.0 if factor >= 3e-2 else 0.3), 1e-6), 1e6)
+        of_differences, well = fresh, best == 0 and WELL_PROMISED[0] < kept_promise < WELL_PROMISED[1]
+        moved = points[best][0] - z
+        columns = secant(columns, chosen[mask] - residuals[mask], moved, np.diag(systems[1.0][0]) + precisions) if well else None
+        fresh = False
         z, residuals, cost = points[best][0], chosen, costs[best]
         history.append(cost)
         if gain < enough + share * cost:
-            converged = True
-            break
+            if of_differences:
+                converged = True
+                break
+            columns = None
         if stop is not None and stop():
             break
     return Fitted(
@@ -179,6 +194,17 @@ def fit(
         chi_held=chi_square(residuals, simulator.held_out),
         history=tuple(history),
     )
+
+
+def secant(columns: FloatArray, change: FloatArray, move: FloatArray, scale: FloatArray) -> FloatArray:
+    """The Jacobian nearest to the given one that gives the change which a move made: Broyden's update.
+
+    columns : shape (n, size);  change : of the residuals, (n,);  move : (size,);  scale : squares of the coordinates' weights, (size,)
+
+    Source: Dennis, Schnabel, Numerical Methods for Unconstrained Optimization, 8.1, with weighted coordinates.
+    """
+    weighted = scale * move
+    return np.asarray(columns + np.outer(change - columns @ move, weighted / max(float(move @ weighted), TINY)))
 
 
 def _promised(move: FloatArray, curvature: FloatArray, slope: FloatArray, precisions: FloatArray) -> float:

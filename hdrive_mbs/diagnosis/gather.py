@@ -19,6 +19,7 @@ from hdrive_mbs.diagnosis.search import (
     Report,
     Search,
     Task,
+    enough,
     fit_nominal,
     joined,
     run_task,
@@ -29,9 +30,10 @@ from hdrive_mbs.diagnosis.search import (
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
+from hdrive_mbs.errors import AnalysisError
 
 LEFT = 1.2
-"""Mean square left by the best single cause above which a second one is looked for."""
+"""Mean square left by the best single cause above which a second one is looked for; more beside a strong one (``enough``)."""
 SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 """Of the search for a second cause."""
 SINGLES, LAST, LONG = 3, 4, 20
@@ -85,7 +87,7 @@ def gather(
     single = search(team, coarse, null, groups, tried, report=said)
     first = single.found[0] if single.found else None
     pair = None
-    if first is not None and first.log_odds > 0.0 and first.fitted.chi_fit > LEFT:
+    if first is not None and first.log_odds > 0.0 and first.fitted.chi_fit > enough(null, LEFT):
         again = partial(_second, said)
         pair = search(team, coarse, first.fitted, groups, tried, depth=SHALLOW, report=again)
     serious = single.labels[:SINGLES]
@@ -107,8 +109,12 @@ def gather(
     for item in (*serious, *double):
         far = item is leader or near
         tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, LONG if far else LAST, EXACT, hops=HOPS if item is leader else 0))
-    fits = team.map(run_task, fine, tasks, partial(said, "all samples"))
-    pairs = list(zip((*serious, *double), fits[2:], strict=True))
-    final = [scored(Found(item.suspect, fitted), fits[1]) for item, fitted in pairs]
-    singles = sorted(final[: len(serious)], key=lambda item: -item.log_odds)
-    return Evidence(fine, fits[0], fits[1], single, pair, tuple(singles), tuple(final[len(serious) :]))
+    nominal, refitted, *others = team.map(run_task, fine, tasks, partial(said, "all samples"))
+    if nominal is None or refitted is None:
+        raise AnalysisError("The nominal scene cannot be simulated through all of the records; look at its start values and inputs.")
+    final = [
+        None if fitted is None else scored(Found(item.suspect, fitted), refitted)
+        for item, fitted in zip((*serious, *double), others, strict=True)
+    ]
+    singles = sorted(filter(None, final[: len(serious)]), key=lambda item: -item.log_odds)
+    return Evidence(fine, nominal, refitted, single, pair, tuple(singles), tuple(filter(None, final[len(serious) :])))

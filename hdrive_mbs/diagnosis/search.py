@@ -37,7 +37,9 @@ FAR = 1.3
 """Mean square of a fitted model above which everything is looked at from the data sheet's values too: a cause that is
 missing has bent them, and from there it may not show."""
 ENOUGH = 1.1
-"""Mean square that ends the search."""
+"""Mean square that ends the search; see ``enough``."""
+SMALL = 0.05
+"""Of the logarithm of the nominal model's mean square: left by a law that is nearly right beside a cause that is strong."""
 AGAIN = 2
 """Of the best laws that are fitted again from the data sheet's values."""
 PARAMETER = "parameter"
@@ -167,7 +169,7 @@ def search(
     work = _Work(team, simulator, report or (lambda stage, done, total: None), how)
     everything = suspects(base.hypothesis, groups, tried)
     found, looks = work.from_ground(base, base, everything)
-    if base.chi_fit > FAR and not any(item.fitted.chi_fit < ENOUGH for item in found):
+    if base.chi_fit > FAR and not any(item.fitted.chi_fit < enough(base, ENOUGH) for item in found):
         more, others = work.from_ground(reset(simulator, base), base, everything)
         found = _cheapest([*found, *more])
         looks = {name: min(cost, looks.get(name, cost)) for name, cost in (looks | others).items()}
@@ -175,9 +177,17 @@ def search(
         moved = _elsewhere(found[0] if found else None, base, everything) + _restarts(found)
         found = _cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
         if found and not found[0].fitted.converged:
-            found[0] = Found(found[0].suspect, run_task(simulator, further(found[0].fitted)))
+            found[:1] = work.fitted([(found[0].suspect, further(found[0].fitted))], "fitting the best")
     final = sorted((scored(item, base) for item in found), key=lambda item: -item.log_odds)
     return Search(base=base, found=tuple(final), looks=dict(sorted(looks.items(), key=lambda item: item[1])))
+
+
+def enough(base: Fitted, least: float) -> float:
+    """Mean square below which nothing is left that is worth a search: some value, or what a law that is nearly right leaves.
+
+    A law never is what the machine does: of a cause with a thousand times the power of the noise it misses some thousandths.
+    """
+    return max(least, float(base.chi_fit**SMALL))
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,9 +223,9 @@ class _Work:
         return _cheapest(found), {f"{suspect.law} at {suspect.label[1]}": look.cost for suspect, look in first}
 
     def fitted(self, asked: Sequence[tuple[Suspect, Task]], words: str) -> list[Found]:
-        """Suspects with their tasks done."""
+        """Suspects with their tasks done; those that cannot be run from where they begin are left out."""
         fits = self.team.map(run_task, self.simulator, [task for _, task in asked], partial(self.said, words))
-        return [Found(suspect, fitted) for (suspect, _), fitted in zip(asked, fits, strict=True)]
+        return _those_that_ran([suspect for suspect, _ in asked], fits)
 
     def _looked(
         self, screen: Screen, asked: Sequence[Suspect], starts: Sequence[tuple[Hypothesis, ...]], words: str
@@ -224,6 +234,10 @@ class _Work:
         answers = self.team.map(_look, screen, starts, partial(self.said, words))
         looks = [(suspect, look) for suspect, look in zip(asked, answers, strict=True) if look is not None]
         return sorted(looks, key=lambda pair: pair[1].cost)
+
+
+def _those_that_ran(suspects_: Sequence[Suspect], fits: Sequence[Fitted | None]) -> list[Found]:
+    return [Found(suspect, fitted) for suspect, fitted in zip(suspects_, fits, strict=True) if fitted is not None]
 
 
 def _cheapest(found: Sequence[Found]) -> list[Found]:
@@ -288,10 +302,13 @@ class Task:
     hops: int = 0
 
 
-def run_task(simulator: Simulator, task: Task) -> Fitted:
-    """Do it."""
-    fitted = task.done or fit(simulator, task.hypothesis, task.z, steps=task.steps, share=task.share, begin=task.residuals)
-    return settled(simulator, fitted, task.hops) if task.hops else fitted
+def run_task(simulator: Simulator, task: Task) -> Fitted | None:
+    """Do it; None where it cannot be run from where it begins."""
+    try:
+        fitted = task.done or fit(simulator, task.hypothesis, task.z, steps=task.steps, share=task.share, begin=task.residuals)
+    except AnalysisError:
+        return None
+    return settled(simulator, fitted, task.hops) if task.hops and fitted.chi_fit < NEAR else fitted
 
 
 def further(fitted: Fitted, steps: int = CONVERGED, share: float = FINE, hops: int = 0) -> Task:
@@ -313,7 +330,7 @@ def joined(team: Team, simulator: Simulator, first: Found, others: Sequence[Foun
         start = hypothesis.start(first.fitted.hypothesis.nominal_part(first.fitted.z))
         tasks.append(Task(hypothesis, start, None, ELSEWHERE, FINE))
         suspects_of.append(item.suspect)
-    return [Found(suspect, fitted) for suspect, fitted in zip(suspects_of, team.map(run_task, simulator, tasks), strict=True)]
+    return _those_that_ran(suspects_of, team.map(run_task, simulator, tasks))
 
 
 def swapped(team: Team, simulator: Simulator, pair: Found, first: Label, others: Sequence[Found]) -> list[Found]:
@@ -336,7 +353,7 @@ def swapped(team: Team, simulator: Simulator, pair: Found, first: Label, others:
         hypothesis = Hypothesis(own.factors, (*own.added, _renamed(second.added[-1], base)), base.loose)
         tasks.append(Task(hypothesis, hypothesis.start(pair.fitted.hypothesis.nominal_part(pair.fitted.z)), None, ELSEWHERE, FINE))
         names.append(pair.suspect)
-    return [Found(suspect, fitted) for suspect, fitted in zip(names, team.map(run_task, simulator, tasks), strict=True)]
+    return _those_that_ran(names, team.map(run_task, simulator, tasks))
 
 
 def scored(found: Found, base: Fitted) -> Found:

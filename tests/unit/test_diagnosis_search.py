@@ -1,0 +1,70 @@
+"""Parts of the search on their own: the mended Jacobian, what is left out, when a search ends."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import hdrive_mbs as hm
+from hdrive_mbs.diagnosis.diagnose import factors_of
+from hdrive_mbs.diagnosis.fit import fit, jacobian, secant
+from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.search import ENOUGH, Task, enough, run_task
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.errors import AnalysisError
+from tests.unit.diagnosis_cases import bench, quiet
+
+BENCH = bench()
+
+
+@pytest.fixture(scope="module")
+def simulator() -> Simulator:
+    """One record of the small drive bench, its parameters off by their tolerance."""
+    return Simulator(BENCH.trials(quiet()[0]), 2.5e-4, 4)
+
+
+def test_secant_gives_the_change_that_was_seen_and_leaves_what_lies_across_the_move() -> None:
+    rng = np.random.default_rng(1)
+    columns, change, move, scale = rng.normal(size=(30, 4)), rng.normal(size=30), rng.normal(size=4), rng.uniform(0.1, 9.0, 4)
+    mended = secant(columns, change, move, scale)
+    np.testing.assert_allclose(mended @ move, change, rtol=1e-12)
+    across = rng.normal(size=4)
+    across -= move * (across @ (scale * move)) / (move @ (scale * move))
+    np.testing.assert_allclose(mended @ across, columns @ across, rtol=0.0, atol=1e-12)
+
+
+def test_a_mended_jacobian_ends_where_one_of_differences_does(simulator: Simulator, monkeypatch: pytest.MonkeyPatch) -> None:
+    hypothesis = Hypothesis(factors_of(BENCH))
+    start = np.full(hypothesis.size, 0.8)
+    with_mending = fit(simulator, hypothesis, start, share=1e-7)
+    monkeypatch.setattr("hdrive_mbs.diagnosis.fit.WELL_PROMISED", (np.inf, np.inf))
+    without = fit(simulator, hypothesis, start, share=1e-7)
+    assert with_mending.converged and without.converged
+    assert with_mending.cost == pytest.approx(without.cost, abs=0.2)  # what ends a fit
+    np.testing.assert_allclose(with_mending.curvature, without.curvature, rtol=0.02, atol=0.02 * without.curvature.max())
+
+
+def test_the_curvature_is_that_of_differences_at_the_end(simulator: Simulator) -> None:
+    hypothesis = Hypothesis(factors_of(BENCH))
+    fitted = fit(simulator, hypothesis, np.full(hypothesis.size, 0.8), share=1e-7)
+    columns = jacobian(simulator, hypothesis, fitted.z, fitted.residuals)
+    weighted = columns * simulator.blocks.weights(fitted.residuals[simulator.fit])[:, None]
+    np.testing.assert_allclose(np.diag(fitted.curvature), np.diag(weighted.T @ columns), rtol=0.02)
+
+
+def test_what_cannot_be_run_from_where_it_begins_is_left_out(simulator: Simulator) -> None:
+    hypothesis = Hypothesis(factors_of(BENCH), (Added(hm.ViscousDrag(coefficient=900.0), "motor", "drag"),))
+    # the rate drag/inertia times the step is 200; what steps of this method follow ends at 2.8
+    task = Task(hypothesis, hypothesis.start(), None, 3, 1e-4)
+    with pytest.raises(AnalysisError, match="cannot be simulated"):
+        fit(simulator, hypothesis, hypothesis.start())
+    assert run_task(simulator, task) is None
+
+
+def test_more_is_left_over_beside_a_strong_cause(simulator: Simulator) -> None:
+    hypothesis = Hypothesis(factors_of(BENCH))
+    fitted = fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=0)
+    assert enough(dataclasses.replace(fitted, chi_fit=1.5), ENOUGH) == ENOUGH
+    assert ENOUGH < enough(dataclasses.replace(fitted, chi_fit=1e4), ENOUGH) < 2.0
