@@ -11,7 +11,6 @@ from typing import Any
 from hdrive_mbs.compiled.llvm_code import functions
 from hdrive_mbs.compiled.runge_kutta import loop
 from hdrive_mbs.compiled.structure import Structure
-from hdrive_mbs.errors import DependencyError
 
 
 @dataclass(frozen=True)
@@ -40,7 +39,7 @@ class Machine:
 
 @cache
 def processor() -> Processor:
-    """This computer's.  Raises DependencyError without llvmlite."""
+    """This computer's."""
     llvm = _llvm()
     features = llvm.get_host_cpu_features()
     arm = llvm.get_default_triple().startswith(("aarch64", "arm64"))
@@ -54,8 +53,6 @@ def machine(structure: Structure, width: int = 1, *, shared: bool = True) -> Mac
 
     width : lanes that run side by side
     shared : all lanes have the same inputs
-
-    Raises DependencyError without llvmlite.
     """
     llvm, host = _llvm(), processor()
     sources = [*functions(structure, width, shared=shared, fused=host.fused), *loop(structure.states, len(structure.readings), width)]
@@ -74,10 +71,8 @@ def machine(structure: Structure, width: int = 1, *, shared: bool = True) -> Mac
 
 
 def _llvm() -> Any:
-    try:
-        import llvmlite.binding as llvm
-    except ImportError:
-        raise DependencyError('Compiled runs need llvmlite: python -m pip install "hdrive-mbs[diagnosis]"') from None
+    import llvmlite.binding as llvm  # 0.2 s that only runs need
+
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     return llvm

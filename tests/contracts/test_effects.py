@@ -545,7 +545,6 @@ def test_its_places_are_those_where_it_can_be_put(example: Example) -> None:
 
 
 def test_a_compiled_run_equals_that_of_the_engine(example: Example) -> None:
-    pytest.importorskip("llvmlite", reason='compiled runs need the extra "diagnosis"')
     # the same method with the same steps: only rounding differs, which 1000 steps and the corners of laws enlarge
     solver = RungeKutta4(step=1e-4)
     scene = placed(example)

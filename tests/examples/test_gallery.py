@@ -37,8 +37,6 @@ def blank(picture: np.ndarray) -> bool:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_script_makes_a_picture_with_named_axes(name: str) -> None:
-    if name.startswith("diagnosis"):
-        pytest.importorskip("llvmlite", reason='needs the extra: pip install -e ".[diagnosis]"')
     figure = make().drawn(name).figure
     figure.savefig(buffer := io.BytesIO(), format="png", dpi=50)
     buffer.seek(0)

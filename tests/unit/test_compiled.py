@@ -25,8 +25,6 @@ from hdrive_mbs.expression.node import NUMERIC
 from hdrive_mbs.expression.pieces import lines_between
 from models.harmonic_drive_train import build
 
-pytest.importorskip("llvmlite", reason='compiled runs need the extra "diagnosis"')
-
 x, v, t = variable("x"), variable("v"), variable("t")
 POINTS = (-2.5, -1.0, -0.3, -0.0, 0.0, 1e-9, 0.3, 1.0, 2.0, 3.75)
 CHANNELS = ("motor.speed", "load.speed", "load.angle", "gear.torque", "gear.twist")

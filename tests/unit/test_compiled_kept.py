@@ -18,8 +18,6 @@ from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.network import claims
 from models import drive_bench, rotor_bench
 
-pytest.importorskip("llvmlite", reason='compiled runs need the extra "diagnosis"')
-
 KEPT: tuple[Any, ...] = (
     topology._joints, topology._check, topology._layout, shaft_section._ends, shaft_section._matrices, claims._values,
     groups._groups, linear_forces._shares, constant_mass._factor, constant_mass._column, structure.planned,

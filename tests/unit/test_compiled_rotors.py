@@ -27,8 +27,6 @@ from models import rotor_bench, two_rotor_line
 from tests.unit.rotor_scenes import MASS, POLAR, STIFFNESS, constant, jeffcott
 from tests.unit.test_rotor_whirl import UNBALANCED, geared
 
-pytest.importorskip("llvmlite", reason='compiled runs need the extra "diagnosis"')
-
 FloatArray = npt.NDArray[np.float64]
 SAMPLE = rotor_bench.SAMPLE_TIME
 

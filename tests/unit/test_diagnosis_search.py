@@ -41,7 +41,8 @@ def test_a_mended_jacobian_ends_where_one_of_differences_does(simulator: Simulat
     with_mending = fit(simulator, hypothesis, start, share=1e-7)
     monkeypatch.setattr("hdrive_mbs.diagnosis.fit.WELL_PROMISED", (np.inf, np.inf))
     without = fit(simulator, hypothesis, start, share=1e-7)
-    assert with_mending.converged and without.converged
+    assert with_mending.converged
+    assert without.converged
     assert with_mending.cost == pytest.approx(without.cost, abs=0.2)  # what ends a fit
     np.testing.assert_allclose(with_mending.curvature, without.curvature, rtol=0.02, atol=0.02 * without.curvature.max())
 

@@ -278,7 +278,6 @@ COLUMNS = {column: drive_bench.CHANNELS[column] for column in drive_bench.NOISE}
 
 
 def in_noise(network: Network, step: float) -> dict[str, np.ndarray]:
-    pytest.importorskip("llvmlite", reason='compiled runs need the extra "diagnosis"')
     run = CompiledLine(network, tuple(COLUMNS.values())).run(2400, drive_bench.SAMPLE_TIME, step=step)
     return {column: run.values[channel] / drive_bench.noise()[column] for column, channel in COLUMNS.items()}
 

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 pytest.importorskip("pyarrow", reason="withheld cases are Parquet files")
-pytest.importorskip("llvmlite", reason="the diagnosis compiles its lines (extra: diagnosis)")
 
 from benchmarks.withheld import methods, run, scoring
 from benchmarks.withheld.answer import answer_of, failed_answer

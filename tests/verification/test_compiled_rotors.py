@@ -21,8 +21,6 @@ from tests.verification.test_rotor_conservation import ROTOR_1, ROTOR_2, section
 from tests.verification.test_sommerfeld import DISC, END, STRONG, WEAK
 from tests.verification.test_sommerfeld import scene as sommerfeld
 
-pytest.importorskip("llvmlite", reason='compiled runs need the extra "diagnosis"')
-
 SAMPLE = rotor_bench.SAMPLE_TIME
 
 

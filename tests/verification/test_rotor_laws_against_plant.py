@@ -16,7 +16,6 @@ from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 from hdrive_mbs.effects.effect import Effect
 from models import rotor_bench
 
-pytest.importorskip("llvmlite", reason='compiled runs need the extra "diagnosis"')
 pytest.importorskip("numba", reason="the plant of the withheld cases needs numba")
 
 from benchmarks.withheld.plant.rotor_line.machine import NOMINAL
