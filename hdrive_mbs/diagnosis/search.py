@@ -40,6 +40,8 @@ ENOUGH = 1.1
 """Mean square that ends the search; see ``enough``."""
 SMALL = 0.05
 """Of the logarithm of the nominal model's mean square: left by a law that is nearly right beside a cause that is strong."""
+HOPELESS = 10.0
+"""Times the mean square of a law that is near, above which others are not fitted to the end."""
 AGAIN = 2
 """Of the best laws that are fitted again from the data sheet's values."""
 PARAMETER = "parameter"
@@ -216,8 +218,10 @@ class _Work:
         tasks = [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE)) for suspect, look in picked]
         brief = _cheapest(self.fitted(tasks, "a few joint steps"))
         kept = brief[: _worth(base.cost, [item.fitted.cost for item in brief], self.how.kept)]
-        leading = kept[0].suspect.label if kept else None
-        thorough = [k < self.how.serious or item.suspect.label == leading for k, item in enumerate(kept)]
+        thorough = [
+            (k < self.how.serious or item.suspect.label == kept[0].suspect.label) and not _beyond(item.fitted, kept[0].fitted)
+            for k, item in enumerate(kept)
+        ]
         further_ = [further(item.fitted, *((CONVERGED, FINE, 1) if end else (STEPS,))) for item, end in zip(kept, thorough, strict=True)]
         found = self.fitted([(item.suspect, task) for item, task in zip(kept, further_, strict=True)], "fitting the best")
         return _cheapest(found), {f"{suspect.law} at {suspect.label[1]}": look.cost for suspect, look in first}
@@ -238,6 +242,11 @@ class _Work:
 
 def _those_that_ran(suspects_: Sequence[Suspect], fits: Sequence[Fitted | None]) -> list[Found]:
     return [Found(suspect, fitted) for suspect, fitted in zip(suspects_, fits, strict=True) if fitted is not None]
+
+
+def _beyond(fitted: Fitted, leading: Fitted) -> bool:
+    """Whether a law is so far from the records that it will not catch up with one that is near."""
+    return leading.chi_fit < NEAR and fitted.chi_fit > HOPELESS * leading.chi_fit
 
 
 def _cheapest(found: Sequence[Found]) -> list[Found]:
@@ -273,7 +282,7 @@ def _elsewhere(best: Found | None, base: Fitted, everything: Sequence[Suspect]) 
         hypothesis = Hypothesis(old.factors, added, old.loose)
         z = hypothesis.start(fitted.hypothesis.nominal_part(fitted.z))
         z[base.hypothesis.nominal_size : base.hypothesis.size] = base.z[base.hypothesis.nominal_size :]
-        tasks.append((suspect, Task(hypothesis, z, None, ELSEWHERE, FINE)))
+        tasks.append((suspect, Task(hypothesis, z, None, STEPS if fitted.chi_fit < NEAR else ELSEWHERE, FINE)))
     return tasks
 
 
