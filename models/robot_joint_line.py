@@ -32,6 +32,7 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import math
+from pathlib import Path
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
@@ -299,3 +300,8 @@ def bench() -> Bench:
         inputs={"feed_speed": Input(path="motor.characteristic.feed", law=lambda t, w: hm.SpeedTable(times=t, speeds=w))},
         together={"gear stiffness": ("gear stiffness 1", "gear stiffness 2")},
     )
+
+
+def bundled_records() -> Path:
+    """Folder with a record of this joint, simulated by another program (benchmarks/flagship), with a cause for ``bench()`` to miss."""
+    return Path(hm.__file__).parent / "data" / "robot_joint_line"

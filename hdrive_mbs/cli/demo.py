@@ -117,11 +117,6 @@ def flagship() -> ModuleType:
     raise FileFormatError(f"{MODEL} is neither in {package / 'data'} nor in {package.parent / 'models'}; install the package again.")
 
 
-def bundled_records() -> Path:
-    """Folder with the records that the demo diagnoses."""
-    return Path(hdrive_mbs.__file__).parent / "data" / "robot_joint_line"
-
-
 @contextmanager
 def _timed(name: str, seconds: dict[str, float], cpu: dict[str, float]) -> Iterator[None]:
     """Wall time and CPU time of a section, worker processes that have ended counted."""
@@ -154,7 +149,7 @@ def _diagnosis(joint: ModuleType, out: Path) -> Diagnosis | str:
         from hdrive_mbs.records.reading import read_records
 
         with stage_bars() as report:
-            known, records = joint.bench(), read_records(bundled_records())
+            known, records = joint.bench(), read_records(joint.bundled_records())
             found = diagnose(known, records, candidates=one_law_each(), workers=min(2, os.cpu_count() or 1), report=report)
     except HdriveError as error:
         return f"The record was not diagnosed: {error}"

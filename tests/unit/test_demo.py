@@ -127,7 +127,7 @@ def test_an_installed_package_brings_its_own_model(monkeypatch: pytest.MonkeyPat
         command.flagship()
     shutil.copy(ROOT / "models" / "robot_joint_line.py", package / "data")
     assert str(command.flagship().__file__).startswith(str(package))
-    assert command.bundled_records().parent == package / "data"
+    assert command.flagship().bundled_records().parent == package / "data"
 
 
 def test_quick_library_has_one_law_of_each_family() -> None:
