@@ -49,6 +49,7 @@ def from_file(path: Path) -> type[Effect]:
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's job in the background ignores it, and so do its children
     given = sys.argv[1:]
     number = getattr(signal, given[3]) if given[3] else 0
     own = tuple(from_file(Path(path)) for path in given[4:])

@@ -197,10 +197,12 @@ def test_a_damaged_job_file_is_run_again(tmp_path: Path) -> None:
 
 
 INTERRUPTED = """
+import signal
 import sys
 import hdrive_mbs as hm
 from tests.unit.campaign_jobs import logged
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's job in the background ignores it, and so do its children
     points = [{"x": x, "log": sys.argv[1], "seconds": 0.1} for x in range(30)]
     campaign = hm.sweep(logged, points, workers=2, folder=sys.argv[2])
     print(campaign.status)
