@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from benchmarks.withheld.finding import Claimed, Finding
@@ -23,7 +23,7 @@ def answer_of(case: str, finding: Finding, names: Names) -> dict[str, Any]:
     verdict = finding.verdict
     if verdict not in WORDS:
         verdict = _verdict([name for name, _ in claimed])
-    ranking = ranking_of(finding.ranking, names)
+    ranking = ranking_of(finding.ranking, names, [item.label for item in finding.claimed])
     chances = {(item["effect"], item["at"]): item["probability"] for item in ranking}
     return {
         "case": case,
@@ -46,15 +46,22 @@ def failed_answer(case: str, error: str, seconds: float) -> dict[str, Any]:
     return {"case": case, "verdict": "unknown", **nothing, "gap": {}, "seconds": seconds, "error": error}
 
 
-def ranking_of(ranking: Mapping[Label, float], names: Names) -> list[dict[str, Any]]:
-    """Names by falling probability: labels with one name are added up, at the place of the most probable of them."""
+def ranking_of(ranking: Mapping[Label, float], names: Names, together: Sequence[Label] = ()) -> list[dict[str, Any]]:
+    """Names by falling probability: labels with one name are added up, at the place of the most probable of them.
+
+    together : causes that are claimed together; they share one probability, which counts once for each name
+    """
     total: dict[str, float] = {}
+    counted: set[str] = set()
     best: dict[str, tuple[float, str | None]] = {}
     for label, probability in ranking.items():
         name = names.name(label)
         effect = label[0] if label[0] in WORDS else "unknown" if name is None else name[0]
         at = None if label[0] in WORDS else names.place_of(label)
-        total[effect] = total.get(effect, 0.0) + probability
+        if label not in together or effect not in counted:
+            total[effect] = total.get(effect, 0.0) + probability
+        if label in together:
+            counted.add(effect)
         if effect not in best or probability > best[effect][0]:
             best[effect] = probability, at
     order = sorted(total, key=lambda effect: -total[effect])
@@ -100,9 +107,13 @@ def _chance(name: Name, chances: Mapping[tuple[str, str | None], float]) -> floa
 def _where(finding: Finding, names: Names, claimed: list[Name]) -> list[dict[str, Any]]:
     """Places of the claim first, then the located ones, then those of what was ranked."""
     by_rank: dict[str, float] = {}
+    together, seen = [item.label for item in finding.claimed], []
     for label, probability in finding.ranking.items():
         if label[0] not in WORDS:
-            by_rank[names.place_of(label)] = by_rank.get(names.place_of(label), 0.0) + probability
+            place = names.place_of(label)
+            again = label in together and any(other in together and names.place_of(other) == place for other in seen)
+            by_rank[place] = by_rank.get(place, 0.0) + (0.0 if again else probability)
+            seen.append(label)
     located: dict[str, float] = {}
     for at, probability in finding.where.items():
         located[names.place(at)] = located.get(names.place(at), 0.0) + probability

@@ -148,6 +148,16 @@ def test_laws_of_one_name_are_added_up_in_the_ranking() -> None:
     assert answer["where"][0] == {"at": "load", "probability": pytest.approx(0.55)}
 
 
+def test_what_two_causes_share_counts_once() -> None:
+    both = ("friction", "gear.flexspline"), ("thermal_drift", "gear.flexspline")  # neither has a name
+    ranking = {both[0]: 0.7, both[1]: 0.7, ("unknown", ""): 0.2, ("none", ""): 0.1}
+    answer = answer_of("drive-c01", finding("effect", *both, ranking=ranking), DRIVE)
+    assert answer["ranking"][0]["effect"] == "unknown"
+    assert answer["ranking"][0]["probability"] == pytest.approx(0.9)
+    assert answer["where"][0]["probability"] == pytest.approx(0.7)
+    assert sum(item["probability"] for item in answer["ranking"]) == pytest.approx(1.0)
+
+
 def test_no_claim_names_places_only_where_something_was_located() -> None:
     quiet = answer_of("drive-c01", finding("none", ranking={("none", ""): 0.9, ("friction", "load"): 0.1}), DRIVE)
     lost = answer_of("drive-c01", finding("unknown", ranking={("unknown", ""): 0.9, ("friction", "load"): 0.1}, where={"gear": 0.8}), DRIVE)
