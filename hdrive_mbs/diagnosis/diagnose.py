@@ -165,6 +165,8 @@ def _located(evidence: Evidence, notes: list[str]) -> tuple[tuple[Place, ...], L
     """Places of the gap, most probable first; a note where they cannot be found."""
     try:
         localiser = Localiser(evidence.fine, evidence.null)
+        if localiser.doubt:
+            notes.append(f"Place of the gap: {localiser.doubt}")
         return localiser.places(), localiser
     except HdriveError as error:
         notes.append(f"The place of the gap was not looked for: {error}")

@@ -3,6 +3,8 @@
 sources       places where a force may act, as generalized forces
 motion        the run that everything is linearised about
 linear        A, B, C, D along a motion, and transfers
+observer      residuals of rotors without the vibration that goes on by itself
+line          a trial's network linearised, with its places
 spectra       residuals and their slopes as short-time spectra
 response      what a force at each place does to the columns
 likelihood    how likely the residuals are with a force at one place

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.locate.motion import Motion
 from hdrive_mbs.diagnosis.locate.response import Response
+from hdrive_mbs.diagnosis.locate.sources import Source
 from hdrive_mbs.diagnosis.locate.spectra import Spectra, joined
 
 FloatArray = npt.NDArray[np.float64]
@@ -46,22 +47,33 @@ def most_probable(transfer: ComplexArray, residuals: ComplexArray, strength: Flo
     return np.asarray(np.linalg.solve(system, strength[..., None, None] * (back @ residuals[..., None]))[..., 0])
 
 
+def by_direction(source: Source, force: ComplexArray) -> ComplexArray:
+    """Spectra of a force in each of its directions: one that turns with the shaft along x is -i times that along y."""
+    if not source.rotating:
+        return force
+    return np.stack([force, -1j * force], axis=-1).reshape(*force.shape[:-1], -1)
+
+
 def latent_force(
-    motion: Motion, spectra: Spectra, response: Response, at: str, residuals: ComplexArray, strength: FloatArray
+    motion: Motion, spectra: Spectra, response: Response, name: str, residuals: ComplexArray, strength: FloatArray
 ) -> list[LatentForce]:
-    """The most probable forces of every window and band, put together; see ``most_probable``."""
-    source, trial = response.sources[at], motion.trial
-    found = most_probable(response.of[at], residuals, strength)
+    """The most probable forces of every window and band, put together; see ``most_probable``.
+
+    name : of the source
+    """
+    source, trial = response.sources[name], motion.trial
+    at = source.at
+    found = by_direction(source, most_probable(response.of[name], residuals, strength))
     nothing = np.full(trial.samples, np.nan)
     known = {channel.name for channel in motion.network.channels}
     made = []
-    for k, way in enumerate(source.along or {"error": {}}):
+    for k, way in enumerate(source.along or source.columns or ("error",)):
         factors = source.along.get(way, {})
         moved = [
             sum((f * motion.values[f"{kind}:{n}"] for n, f in factors.items()), np.zeros(trial.samples)) for kind in ("angle", "speed")
         ]
         if not factors:
-            moved = [motion.reading(at) if at in known else motion.columns[at], nothing]
+            moved = [motion.reading(at) if at in known else motion.columns[way if source.columns else at], nothing]
         torque = motion.reading(f"{at}.torque") if way == "torsion" and f"{at}.torque" in known else nothing
         made.append(
             LatentForce(

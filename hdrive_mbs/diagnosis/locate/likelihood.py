@@ -10,8 +10,9 @@ force that explains nothing costs.  Parameters come in linearly with their norma
 Laplace's method.  Source: latent forces after Alvarez, Luengo, Lawrence (2009), with a free spectrum for a covariance;
 evidence after MacKay, Information Theory, Inference and Learning Algorithms, 27.
 
-Leaves out what a force does to the next window, and how the linear model changes within one: places of a line whose vibrations
-last much longer than a window, like those of a rotor with little damping, are not told apart reliably.
+Leaves out what a force does to the next window, and how the linear model changes within one.  Vibrations that last longer than
+a window, like those of rotors, are taken out before (observer.py).  What is slower than a window shows in few bins, and there rho
+takes it up as well as a force does: steady forces are hardly placed.  One force is looked for at a time.
 """
 
 from __future__ import annotations
@@ -106,6 +107,7 @@ class Likelihood:
 
     def __init__(self, given: Sequence[Spectra], at: FloatArray, precision: FloatArray) -> None:
         self.given, self.at, self.precision = tuple(given), at, precision
+        self._energies: dict[int, tuple[FloatArray, FloatArray]] = {}
         self._real = []
         for item in given:
             flat = item.values.reshape(-1, item.values.shape[-1])
@@ -135,7 +137,9 @@ class Likelihood:
 
     def quickly(self, place: Place, z: FloatArray, like: Explained) -> Explained:
         """With the parameters and the curvature of another result: a lower bound, but for what the force takes of the curvature."""
-        fits = [self._fit(k, part, None if part is None else self.seen(part, k), z) for k, part in enumerate(place)]
+        left = [self.residuals(k, z)[..., None] for k in range(len(self.given))]
+        seen = [None if part is None else np.matmul(np.swapaxes(part.along.conj(), 2, 3), left[k]) for k, part in enumerate(place)]
+        fits = [like.fits[k] if part is None else self._fit(k, part, seen[k], z) for k, part in enumerate(place)]
         gained = sum(float((new.by_window - old.by_window).sum()) for new, old in zip(fits, like.fits, strict=True))
         return replace(like, log_likelihood=like.log_likelihood + gained, z=z, fits=tuple(fits))
 
@@ -162,15 +166,14 @@ class Likelihood:
 
     def _fit(self, k: int, place: Directions | None, seen: ComplexArray | None, z: FloatArray) -> Fit:
         item = self.given[k]
-        moved = np.concatenate([[1.0], z])
         columns, widths = item.values.shape[2], item.widths
-        total = np.add.reduceat(np.sum(np.abs(item.values @ moved) ** 2, axis=-1), item.bands, axis=1)
+        total = self._energy(k, z)
         numbers = columns * widths
         if place is None or seen is None:
             scale = np.maximum(1.0, total / numbers)
             value = -0.5 * np.sum(numbers * np.log(scale) + total / scale, axis=1)
             return Fit(value, total, scale, np.zeros((len(total), len(item.frequencies))), None)
-        explained = np.abs(seen @ moved) ** 2
+        explained = np.abs(seen[..., 0] if seen.shape[-1] == 1 else seen @ np.concatenate([[1.0], z])) ** 2
         mean = np.add.reduceat(place.power.sum(axis=2), item.bands, axis=1) / widths
         unit = np.repeat(1.0 / np.maximum(mean, 1e-300), widths, axis=1)
         levels = np.concatenate([[0.0], STRENGTHS])
@@ -189,6 +192,15 @@ class Likelihood:
         strength = np.repeat(levels[best], widths, axis=1) * unit
         kept = 1.0 - 1.0 / (1.0 + strength[..., None] * place.power)
         return Fit(sums.sum(axis=1), left, np.maximum(1.0, left / numbers), strength, kept)
+
+    def _energy(self, k: int, z: FloatArray) -> FloatArray:
+        """Sum of squares of the residuals of a trial, (windows, bands)."""
+        known = self._energies.get(k)
+        if known is None or not np.array_equal(known[0], z):
+            item = self.given[k]
+            squares = np.sum(np.abs(self.residuals(k, z)) ** 2, axis=-1)
+            known = self._energies[k] = (z.copy(), np.add.reduceat(squares, item.bands, axis=1))
+        return known[1]
 
     def _normal(self, fits: Sequence[Fit], seen: Sequence[ComplexArray | None]) -> tuple[FloatArray, FloatArray]:
         """J^T W J and J^T W r."""

@@ -85,6 +85,8 @@ def transfers(linear: Linear, rates: ComplexArray) -> ComplexArray:
 
 def _by_modes(a: FloatArray, b: FloatArray, c: FloatArray, rates: ComplexArray) -> ComplexArray:
     """As a sum over eigenvectors; solved one by one where they are nearly parallel."""
+    if not b.shape[1]:
+        return np.zeros((len(rates), len(c), 0), complex)
     values, vectors = np.linalg.eig(a)
     check = np.array([rates[0], rates[len(rates) // 2]])
     right = _solved(a, b, c, check)

@@ -5,16 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 from scipy.special import log_ndtr
 
 from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.locate.latent_force import LatentForce, latent_force, most_probable
+from hdrive_mbs.diagnosis.locate.latent_force import LatentForce, by_direction, latent_force, most_probable
 from hdrive_mbs.diagnosis.locate.likelihood import Directions, Explained, Likelihood, directions
+from hdrive_mbs.diagnosis.locate.line import Line, line
 from hdrive_mbs.diagnosis.locate.motion import KnownForce, Motion, motion_of
 from hdrive_mbs.diagnosis.locate.response import Response, response
+from hdrive_mbs.diagnosis.locate.sources import TURNING
 from hdrive_mbs.diagnosis.locate.spectra import Spectra, joined, spectra
 from hdrive_mbs.diagnosis.result import Place
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -22,6 +25,7 @@ from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import AnalysisError, LawError, ParameterError, SimulationError, unknown_place
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 NOWHERE = "nowhere"
 """Stands for no force at all, among the places."""
@@ -37,6 +41,12 @@ CONTENDS = 0.6
 """Share of the best gain from which on a place is compared more closely."""
 LONGEST = 3.0
 """Standard deviations that a parameter may move at a time."""
+SETTLE, FAR = 2, 0.3
+"""How often parameters are fitted anew before places are compared, while one moves by more standard deviations than this."""
+DOUBTED = 0.3
+"""Share of the probability that stays as it is where the best place is not to be relied on."""
+QUIET, LEAVES = 1.3, 0.4
+"""Mean square that a place may leave in any case, and share of the logarithm of the gap that it may leave, to be relied on."""
 UNCLEAR = 3.0
 """Mean square that even the best place leaves, above which a linear model is not trusted."""
 
@@ -46,22 +56,41 @@ class _About:
     """What the model was linearised about, and the residuals there."""
 
     motions: Sequence[Motion]
+    lines: Sequence[Line]
     spectra: Sequence[Spectra]
-    responses: Sequence[Response]
     likelihood: Likelihood
 
-    def place(self, at: str) -> list[Directions | None]:
-        """Directions of a place in each trial."""
-        return [directions(item.of[at]) if at in item.of else None for item in self.responses]
+    @cached_property
+    def responses(self) -> tuple[Response, ...]:
+        """Of all places, by trial."""
+        return tuple(response(*item) for item in zip(self.motions, self.lines, self.spectra, strict=True))
+
+    def transfer(self, name: str, k: int) -> ComplexArray | None:
+        """Of a source in trial k: where the spin alone is watched, that of a torque at its place; None where it does not show."""
+        return self.responses[k].of.get(self.shown(name, k))
+
+    def shown(self, name: str, k: int) -> str:
+        """The source that shows a place in trial k."""
+        return name if name in self.responses[k].of else f"{self.at(name)}, {TURNING}"
+
+    def place(self, name: str) -> list[Directions | None]:
+        """Directions of a source in each trial."""
+        found = [self.transfer(name, k) for k in range(len(self.responses))]
+        return [None if item is None else directions(item) for item in found]
+
+    def at(self, name: str) -> str:
+        """The place of a source."""
+        return next(item.sources[name].at for item in self.responses if name in item.sources)
 
 
 @dataclass(frozen=True, eq=False)
 class _Tried:
-    """A place with what its force explains.
+    """A source at a place with what its force explains.
 
     gain : log likelihood against nowhere, or what loosening a parameter of the place gains, if that is more (``loose``)
     """
 
+    name: str
     at: str
     about: _About
     found: Explained
@@ -82,43 +111,80 @@ class Localiser:
             raise AnalysisError("The fitted model cannot be run through the records at the full sample rate; use a shorter step.")
         self._about = about
         self._nowhere = about.likelihood.of(None, np.zeros(len(about.likelihood.at)), rounds=3)
+        self._first = about, self._nowhere
+        if any(motion.network.is_lateral for motion in about.motions):
+            self._settle(null.z)
         self._tried = self._all()
 
-    def _linearised(self, z: FloatArray, forces: Sequence[Sequence[KnownForce]]) -> _About | None:
-        """About the motion at these parameters with these forces; None where it cannot be run."""
+    def _linearised(
+        self, z: FloatArray, forces: Sequence[Sequence[KnownForce]], like: _About | None = None, at: str | None = None
+    ) -> _About | None:
+        """About the motion at these parameters with these forces; None where it cannot be run.
+
+        like : has the slopes of the parameters and observers already;  at : for the sources of this place alone
+        """
         try:
             motions = [motion_of(self._simulator, k, self._hypothesis, z, forces[k]) for k in range(len(self._simulator.trials))]
         except (SimulationError, ParameterError, LawError):
             return None
-        made = spectra(self._simulator, self._hypothesis, z, motions, forces)
-        responses = [response(motion, item) for motion, item in zip(motions, made, strict=True)]
+        watching = [item.observer for item in like.lines] if like else [None] * len(motions)
+        lines = [line(motion, at, item) for motion, item in zip(motions, watching, strict=True)]
+        slopes = [item.slopes for item in like.spectra] if like else None
+        made = spectra(self._simulator, self._hypothesis, z, motions, lines, forces, slopes)
         offsets = made[0].values.shape[-1] - 1 - len(z)
-        at = np.concatenate([z, np.zeros(offsets)])
-        return _About(motions, made, responses, Likelihood(made, at, np.concatenate([self._hypothesis.precisions, np.ones(offsets)])))
+        point = np.concatenate([z, np.zeros(offsets)])
+        likelihood = Likelihood(made, point, np.concatenate([self._hypothesis.precisions, np.ones(offsets)]))
+        return _About(motions, lines, made, likelihood)
+
+    def _settle(self, z: FloatArray) -> None:
+        """Linearised anew where the parameters go without a force, as long as they go far.
+
+        A least-squares fit bends the parameters to whatever is missing from the model; stretches that fit badly count less here.
+        """
+        for _ in range(SETTLE):
+            moved = self._nowhere.z[: len(z)]
+            if np.max(np.abs(moved), initial=0.0) < FAR:
+                return
+            z = self._hypothesis.clipped(z + np.clip(moved, -LONGEST, LONGEST))
+            about = self._linearised(z, [()] * len(self._simulator.trials))
+            if about is None:
+                return
+            found = about.likelihood.of(None, np.zeros(len(about.likelihood.at)), rounds=3)
+            if found.log_likelihood <= self._nowhere.log_likelihood:
+                return
+            self._about, self._nowhere = about, found
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All places."""
+        """All sources."""
         return tuple(dict.fromkeys(name for item in self._about.responses for name in item.of))
 
     def _all(self) -> list[_Tried]:
         loose = self._loosened()
-        tried = [self._quick(name) for name in self.names]
-        tried.sort(key=lambda item: -item.gain)
-        for k, item in enumerate(tried[:SERIOUS]):
-            tried[k] = self._try(self._about, item.at, self._nowhere.z, rounds=2)
-        tried.sort(key=lambda item: -item.gain)
+        tried = self._tried_about(self._about, self._nowhere)
+        if any(motion.network.is_lateral for motion in self._about.motions):
+            # without a force parameters may have gone where they stand in for it: begin also where they were
+            about, _ = self._first
+            tried += self._tried_about(about, about.likelihood.of(None, np.zeros(len(about.likelihood.at)), rounds=0))
+            tried = _one_a_place(tried)
         tried = self._closer(tried)
         tried = [replace(item, gain=loose[item.at], loose=True) if loose.get(item.at, -math.inf) > item.gain else item for item in tried]
         return sorted(tried, key=lambda item: -item.gain)
 
-    def _try(self, about: _About, at: str, z: FloatArray, rounds: int) -> _Tried:
-        found = about.likelihood.of(about.place(at), z, rounds)
-        return _Tried(at, about, found, found.log_likelihood - self._nowhere.log_likelihood)
+    def _tried_about(self, about: _About, nowhere: Explained) -> list[_Tried]:
+        """All places about one motion, the best of them with parameters of their own that begin at those of nowhere."""
+        tried = _one_a_place([self._quick(about, nowhere, name) for name in self.names])
+        for k, item in enumerate(tried[:SERIOUS]):
+            tried[k] = self._try(about, item.name, nowhere.z, rounds=2)
+        return sorted(tried, key=lambda item: -item.gain)
 
-    def _quick(self, at: str) -> _Tried:
-        found = self._about.likelihood.quickly(self._about.place(at), self._nowhere.z, self._nowhere)
-        return _Tried(at, self._about, found, found.log_likelihood - self._nowhere.log_likelihood)
+    def _try(self, about: _About, name: str, z: FloatArray, rounds: int) -> _Tried:
+        found = about.likelihood.of(about.place(name), z, rounds)
+        return _Tried(name, about.at(name), about, found, found.log_likelihood - self._nowhere.log_likelihood)
+
+    def _quick(self, about: _About, nowhere: Explained, name: str) -> _Tried:
+        found = about.likelihood.quickly(about.place(name), nowhere.z, nowhere)
+        return _Tried(name, about.at(name), about, found, found.log_likelihood - self._nowhere.log_likelihood)
 
     def _closer(self, tried: list[_Tried]) -> list[_Tried]:
         """Where several places come close and none of them explains the residuals, each of them linearised anew.
@@ -138,7 +204,7 @@ class Localiser:
                 if about is None:
                     del now[k]
                     continue
-                now[k] = self._try(about, item.at, np.zeros(len(item.found.z)), rounds=2)
+                now[k] = self._try(about, item.name, np.zeros(len(item.found.z)), rounds=2)
                 if k not in best or now[k].gain > best[k].gain:
                     best[k] = now[k]
             top = max((item.gain for item in best.values()), default=0.0)
@@ -163,23 +229,26 @@ class Localiser:
         moved[:size] = self._hypothesis.clipped(about.likelihood.at[:size] + moved[:size]) - about.likelihood.at[:size]
         spectra_of, known = [], []
         for k, old in enumerate(about.spectra):
-            source, forces = about.responses[k].sources.get(item.at), []
+            name = about.shown(item.name, k)
+            source, forces = about.responses[k].sources.get(name), []
             force = np.zeros((*old.values.shape[:2], 0))
             if source is not None and source.along:
                 left = about.likelihood.residuals(k, moved)
-                force = most_probable(about.responses[k].of[item.at], left, item.found.fits[k].strength)
-                times = old.trial.times
+                force = most_probable(about.responses[k].of[name], left, item.found.fits[k].strength)
+                times, own = old.trial.times, by_direction(source, force)
                 for way, factors in enumerate(source.along.values()):
-                    forces.append(KnownForce(f"force {way}", factors, times, joined(force[..., way], old.window, len(times))))
+                    forces.append(KnownForce(f"force {way}", factors, times, joined(own[..., way], old.window, len(times))))
             spectra_of.append(force)
             known.append(forces)
-        there = self._linearised(about.likelihood.at[:size] + moved[:size], known)
+        turning = any(motion.network.is_lateral for motion in about.motions)
+        there = self._linearised(about.likelihood.at[:size] + moved[:size], known, about if turning else None, item.at if turning else None)
         if there is None:
             return None
         for k, force in enumerate(spectra_of):
             if force.shape[2]:
-                there.spectra[k].values[..., 0] += (there.responses[k].of[item.at] @ force[..., None])[..., 0]
-        return replace(there, likelihood=Likelihood(there.spectra, there.likelihood.at, there.likelihood.precision))
+                there.spectra[k].values[..., 0] += (there.responses[k].of[there.shown(item.name, k)] @ force[..., None])[..., 0]
+        before = there.likelihood
+        return replace(there, likelihood=Likelihood(there.spectra, before.at, before.precision))
 
     def _loosened(self) -> dict[str, float]:
         """Place -> gain of letting the one of its parameters loose that gains most, any of all parameters being as probable.
@@ -192,24 +261,75 @@ class Localiser:
             assert isinstance(unknown, Factor)
             if unknown.wide == 1.0:
                 gain = self._about.likelihood.loosened(self._nowhere, k, LOOSE) - many
-                for owner in {path.split(".")[0] for path in unknown.nominal}:
+                for owner in {self._owner(path) for path in unknown.nominal}:
                     found[owner] = max(gain, found.get(owner, -math.inf))
         return found
 
-    def places(self) -> tuple[Place, ...]:
-        """All places and NOWHERE, most probable first; before the records speak, NOWHERE is as probable as all others together."""
+    def _owner(self, path: str) -> str:
+        """The place that a parameter belongs to: the part of its path that is one, or the part of the scene."""
+        known = {item.sources[name].at for item in self._about.responses for name in item.sources}
+        parts = path.split(".")
+        return next((at for k in range(len(parts), 0, -1) if (at := ".".join(parts[:k])) in known), parts[0])
+
+    @cached_property
+    def _odds(self) -> dict[str, float]:
+        """Log odds of each place and of NOWHERE against the best place."""
         best = self._tried[0]
-        odds = {NOWHERE: self._less(best, None) + math.log(len(self._tried))} | {item.at: self._less(best, item) for item in self._tried}
-        top = max(0.0, *(value for value in odds.values()))
+        return {NOWHERE: self._less(best, None) + math.log(len(self._tried))} | {item.at: self._less(best, item) for item in self._tried}
+
+    def places(self) -> tuple[Place, ...]:
+        """All places and NOWHERE, most probable first; before the records speak, NOWHERE is as probable as all others together.
+
+        Where there is a doubt, most of the probability is spread over all places alike.
+        """
+        odds = self._odds
+        top = max(odds.values())
         weights = {name: math.exp(value - top) for name, value in odds.items()}
         total = sum(weights.values())
+        kept = DOUBTED if self.doubt else 1.0
+        chances = {name: kept * weight / total + (1.0 - kept) / len(weights) for name, weight in weights.items()}
         close = [item for item in self._tried if odds[item.at] > -CLOSE]
         tied = {item.at: tuple(other.at for other in close if other is not item and self._alike(item, other)) for item in close}
-        made = [Place(at=NOWHERE, probability=weights[NOWHERE] / total, gain=0.0, share=0.0)]
+        made = [Place(at=NOWHERE, probability=chances[NOWHERE], gain=0.0, share=0.0)]
         for item in self._tried:
             share = self._share(item)
-            made.append(Place(at=item.at, probability=weights[item.at] / total, gain=item.gain, share=share, tied=tied.get(item.at, ())))
+            made.append(Place(at=item.at, probability=chances[item.at], gain=item.gain, share=share, tied=tied.get(item.at, ())))
         return tuple(sorted(made, key=lambda place: (-place.probability, -place.gain)))
+
+    @property
+    def left(self) -> float:
+        """Mean square that the best place leaves, 1 being noise; that of nowhere where this is best."""
+        best = self._tried[0].found if self._odds[NOWHERE] <= 0.0 else self._nowhere
+        return best.left / self._about.likelihood.numbers
+
+    @property
+    def doubt(self) -> str:
+        """Why the best place is not to be relied on; empty where it is.
+
+        A force at the right place takes most of the misfit away, on a logarithmic scale: what it leaves comes from motions
+        that the linear model does not follow.  One at a wrong place takes less, and so does one of two causes.  Nowhere is
+        not to be relied on where the model without a force leaves more than noise: what changes too slowly for the windows, like
+        a steady torque, shows in so few bins that no force pays.  Asked of rotors alone, whose places lie close together.
+        """
+        before, left = self._nowhere.left / self._about.likelihood.numbers, self.left
+        if left < QUIET or not any(motion.network.is_lateral for motion in self._about.motions):
+            return ""
+        if self._odds[NOWHERE] > 0.0:
+            return (
+                f"No place was found, yet the nominal model leaves a mean square of {left:.3g} (noise: 1): the gap may be too slow to be"
+                " placed, like a steady torque or a parameter."
+            )
+        if self._tried[0].loose or math.log(left) < LEAVES * math.log(before):
+            return ""
+        return (
+            f"Not reliable here: the best single place leaves a mean square of {left:.3g} of {before:.3g} (noise: 1); the gap may have"
+            " more than one cause, or change the motion too much for a linear model."
+        )
+
+    @property
+    def trusted(self) -> bool:
+        """Whether the best place may be relied on."""
+        return not self.doubt
 
     def _less(self, best: _Tried, other: _Tried | None) -> float:
         """Log odds of another place, or of none, against the best: never more certain than blocks of the records agree.
@@ -232,18 +352,19 @@ class Localiser:
         """Whether a place explains nearly all of what another explains, weighted like the likelihood."""
         if one.loose or other.loose:
             return one.loose and other.loose
-        mines, yourses = one.about.place(one.at), one.about.place(other.at)
         total = shared = 0.0
         for k, fit in enumerate(one.found.fits):
-            mine, yours = mines[k], yourses[k]
-            if mine is None or fit.kept is None:
+            mine, yours = self._about.transfer(one.name, k), self._about.transfer(other.name, k)
+            acting = one.about.transfer(one.name, k)
+            if mine is None or acting is None or fit.kept is None:
                 continue
-            moved = np.concatenate([[1.0], one.found.z])
-            part = (mine.along * (fit.kept * (one.about.likelihood.seen(mine, k) @ moved))[..., None, :]).sum(axis=-1)
-            weight = np.repeat(1.0 / fit.scale, one.about.spectra[k].widths, axis=1)[..., None]
+            force = most_probable(acting, one.about.likelihood.residuals(k, one.found.z), fit.strength)
+            part = (mine @ force[..., None])[..., 0]
+            weight = np.repeat(1.0 / fit.scale, self._about.spectra[k].widths, axis=1)[..., None]
             total += float(np.sum(weight * np.abs(part) ** 2))
             if yours is not None:
-                shared += float(np.sum(weight * np.abs(np.sum(yours.along.conj() * part[..., None], axis=2)) ** 2))
+                along = directions(yours).along
+                shared += float(np.sum(weight * np.abs(np.sum(along.conj() * part[..., None], axis=2)) ** 2))
         return total > 0.0 and shared > ALIKE * total
 
     def _share(self, item: _Tried) -> float:
@@ -257,16 +378,24 @@ class Localiser:
     def force(self, at: str) -> tuple[LatentForce, ...]:
         """The most probable course of the force, or of the sensor's error, at a place in each trial where it shows."""
         for item in self._tried:
-            if item.at == at:
+            if item.at == at or item.name == at:
                 break
         else:
-            raise unknown_place("place", at, self.names, "This localisation")
+            raise unknown_place("place", at, [item.at for item in self._tried], "This localisation")
         made = []
         for k, fit in enumerate(item.found.fits):
             if fit.kept is not None:
-                left = item.about.likelihood.residuals(k, item.found.z)
-                made += latent_force(item.about.motions[k], item.about.spectra[k], item.about.responses[k], at, left, fit.strength)
+                about, left, shown = item.about, item.about.likelihood.residuals(k, item.found.z), item.about.shown(item.name, k)
+                made += latent_force(about.motions[k], about.spectra[k], about.responses[k], shown, left, fit.strength)
         return tuple(made)
+
+
+def _one_a_place(tried: Sequence[_Tried]) -> list[_Tried]:
+    """The best source of each place, best first."""
+    found: dict[str, _Tried] = {}
+    for item in sorted(tried, key=lambda item: -item.gain):
+        found.setdefault(item.at, item)
+    return list(found.values())
 
 
 def _blocks(values: FloatArray) -> FloatArray:

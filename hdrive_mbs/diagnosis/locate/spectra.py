@@ -9,7 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.locate.line import Line, of_windows, window_of
 from hdrive_mbs.diagnosis.locate.motion import KnownForce, Motion, columns_of
+from hdrive_mbs.diagnosis.locate.observer import FINER, NEAR, Observer, averaged
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.noise import Whitener
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -18,12 +20,12 @@ from hdrive_mbs.diagnosis.trial import Trial
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-WINDOW = 1024
-"""Samples of a window; a quarter of the record where that is shorter."""
-HIGHEST = 0.25
+HIGHEST, HIGHEST_OF_ROTORS = 0.25, 0.16
 """Of the sample rate: frequencies above it are left out."""
 UNKNOWN = 1e3
 """Standard deviation of an unknown offset, in those of the noise."""
+NARROW = 8
+"""Most bins of a band for rotors: their forces have orders of the speed."""
 LATTICES = 4
 """Positions of the steps of a rounded column at which its error is worked out."""
 
@@ -34,9 +36,9 @@ class Spectra:
 
     values : shape (windows, bins, columns of the trial, 1 + parameters): the residuals, then what a unit of each parameter
         changes in them.  The squares add up to those of the samples below HIGHEST.
-    frequencies : rad/s, (bins,);  bands : first bin of each band, an octave wide
-    whitening : of each column, (windows, bins, columns);  quiet : what values and whitening were multiplied by, where
-        rounding makes more than white noise;  window : samples;  starts : first sample of each window
+    frequencies : rad/s, (bins,);  bands : first bin of each band, an octave wide, or less for rotors
+    whitening : what the spectrum of a residual is multiplied by, (windows, bins, columns, columns)
+    window : samples;  starts : first sample of each window;  slopes : what parameters change in the columns, by sample
     """
 
     trial: Trial
@@ -44,9 +46,9 @@ class Spectra:
     frequencies: FloatArray
     bands: npt.NDArray[np.int64]
     whitening: ComplexArray
-    quiet: FloatArray
     window: int
     starts: npt.NDArray[np.int64]
+    slopes: FloatArray
 
     @property
     def widths(self) -> npt.NDArray[np.int64]:
@@ -59,13 +61,18 @@ def spectra(
     hypothesis: Hypothesis,
     z: FloatArray,
     motions: Sequence[Motion],
+    lines: Sequence[Line],
     forces: Sequence[Sequence[KnownForce]] | None = None,
+    slopes: Sequence[FloatArray] | None = None,
 ) -> tuple[Spectra, ...]:
     """Of each trial at the full sample rate.
 
     After the search coordinates of the hypothesis come unknown offsets of columns that have one, with precision 1.
-    motions : at z, with the forces of each trial, if there are any
+    motions : at z, with the forces of each trial, if there are any;  lines : linearised about them
+    slopes : of other spectra of these trials nearby; without them they are worked out
     """
+    if slopes is None:
+        slopes = slopes_of(simulator, hypothesis, z, [not item.network.is_lateral for item in motions], motions, forces)
     sizes = []
     for k, motion in enumerate(motions):
         for column, item in motion.trial.measured.items():
@@ -74,21 +81,31 @@ def spectra(
     made = []
     for k, motion in enumerate(motions):
         trial = motion.trial
-        rows = _slopes(simulator, k, hypothesis, z, motion, forces[k] if forces else ())
+        whiten = lines[k].observer is None
+        rows = [_residuals(trial, motion.columns, whiten), *slopes[k]]
         for number, column, size in sizes:
             row = np.zeros(rows[0].shape)
             if number == k:
                 there = np.isfinite(trial.columns[column])
-                row[list(trial.columns).index(column)] = -_whitened(trial.measured[column], np.where(there, size, 0.0))
+                shift = np.where(there, size, 0.0)
+                row[list(trial.columns).index(column)] = -_whitened(trial.measured[column], shift) if whiten else -shift
             rows.append(row)
-        made.append(_of(motion, np.array(rows)))
+        made.append(_of(motion, lines[k], np.array(rows), slopes[k]))
     return tuple(made)
 
 
-def _slopes(
-    simulator: Simulator, number: int, hypothesis: Hypothesis, z: FloatArray, motion: Motion, forces: Sequence[KnownForce]
+def slopes_of(
+    simulator: Simulator,
+    hypothesis: Hypothesis,
+    z: FloatArray,
+    whiten: Sequence[bool],
+    motions: Sequence[Motion],
+    forces: Sequence[Sequence[KnownForce]] | None = None,
 ) -> list[FloatArray]:
-    """Whitened residuals of a trial, and their slopes in each search coordinate: zero where they cannot be had."""
+    """What a unit of each search coordinate changes in the residuals of each trial, (parameters, columns, samples).
+
+    Zero where that cannot be had.
+    """
     steps = hypothesis.steps(z)
     points = []
     for k, step in enumerate(steps):
@@ -97,42 +114,71 @@ def _slopes(
         if hypothesis.clipped(moved)[k] == z[k]:  # at its upper limit
             moved[k], steps[k] = z[k] - step, -step
         points.append(moved)
-    base = _residuals(motion.trial, motion.columns)
-    found = columns_of(simulator, number, hypothesis, points, forces)
-    others = [None if item is None else _residuals(motion.trial, item) for item in found]
-    return [base, *(np.zeros(base.shape) if item is None else (item - base) / step for item, step in zip(others, steps, strict=True))]
+    plain = None if forces is not None and any(forces) else simulator.columns_at(hypothesis, points)
+    made = []
+    for k, motion in enumerate(motions):
+        base = _residuals(motion.trial, motion.columns, whiten[k])
+        found = columns_of(simulator, k, hypothesis, points, forces[k] if forces else ()) if plain is None else [item[k] for item in plain]
+        rows = [None if item is None else _residuals(motion.trial, item, whiten[k]) for item in found]
+        made.append(np.array([np.zeros(base.shape) if row is None else (row - base) / step for row, step in zip(rows, steps, strict=True)]))
+    return made
 
 
-def _residuals(trial: Trial, columns: Mapping[str, FloatArray]) -> FloatArray:
-    """Whitened, (columns, samples); 0 where nothing was measured."""
+def _residuals(trial: Trial, columns: Mapping[str, FloatArray], whiten: bool) -> FloatArray:
+    """(columns, samples); 0 where nothing was measured."""
     left = {column: np.where(np.isfinite(values), values - columns[column], 0.0) for column, values in trial.columns.items()}
-    return np.array([_whitened(trial.measured[column], values) for column, values in left.items()])
+    return np.array([_whitened(trial.measured[column], values) if whiten else values for column, values in left.items()])
 
 
 def _whitened(measured: Measured, values: FloatArray) -> FloatArray:
     return Whitener(replace(measured, offset=0.0), np.ones(len(values), dtype=bool))(values)
 
 
-def _of(motion: Motion, rows: FloatArray) -> Spectra:
-    """rows : shape (1 + parameters, columns, samples)."""
-    trial = motion.trial
-    window = min(WINDOW, trial.samples // 4 // 2 * 2)
-    bins = int(HIGHEST * window) + 1
+def _of(motion: Motion, line: Line, rows: FloatArray, slopes: FloatArray) -> Spectra:
+    """rows : shape (1 + parameters and offsets, columns, samples)."""
+    trial, observer = motion.trial, line.observer
+    window = window_of(trial)
+    bins = int((HIGHEST if observer is None else HIGHEST_OF_ROTORS) * window) + 1
     frequencies = np.asarray(2.0 * np.pi * np.arange(bins) / (window * trial.every), float)
     edges = [0, 1]
-    while 2 * edges[-1] < bins:
+    while 2 * edges[-1] < bins and (observer is None or edges[-1] < NARROW):
         edges.append(2 * edges[-1])
-    bands = np.array(edges)
-    values = np.moveaxis(windowed(rows, window, bins), (0, 1), (3, 2))
-    impulse = np.eye(1, trial.samples)[0]
-    response = [_whitened(trial.measured[column], impulse)[:window] for column in trial.columns]
-    late = np.array([trial.measured[column].late * trial.every for column in trial.columns])
-    whitening = np.fft.rfft(np.array(response), n=window)[:, :bins].T * np.exp(1j * frequencies[:, None] * late)
-    quiet = np.ones((*values.shape[:2], len(trial.columns)))
-    for k, column in enumerate(trial.columns):
-        quiet[:, :, k] = _quieter(trial.measured[column], motion.columns[column], window, bins, bands)
+    bands = np.array(edges if observer is None else [*edges, *range(edges[-1] + NARROW, bins - NARROW // 2, NARROW)])
+    values = np.moveaxis(windowed(rows if observer is None else observer.errors(rows), window, bins), (0, 1), (3, 2))
     starts = window // 2 * (np.arange(len(values)) - 1)
-    return Spectra(trial, values * quiet[..., None], frequencies, bands, whitening * quiet, quiet, window, starts)
+    if observer is not None:  # what its errors hold of the noise before the end of a record shows whole in whole windows alone
+        starts = starts[starts + window <= trial.samples]
+        values = values[: len(starts)]
+    quiet = np.ones((len(starts), bins, len(trial.columns)))
+    for k, column in enumerate(trial.columns):
+        factor = _quieter(trial.measured[column], motion.columns[column], window, bins, bands)
+        quiet[:, :, k] = factor[: len(starts)]
+    impulse = np.eye(1, trial.samples)[0]
+    response = np.array([_whitened(trial.measured[column], impulse)[:window] for column in trial.columns])
+    if observer is None:
+        late = np.array([trial.measured[column].late * trial.every for column in trial.columns])
+        flat = np.fft.rfft(response, n=window)[:, :bins].T * np.exp(1j * frequencies[:, None] * late) * quiet
+        return Spectra(trial, values * quiet[..., None], frequencies, bands, flat[..., None] * np.eye(len(late)), window, starts, slopes)
+    whitening = _against(observer, np.fft.rfft(response, n=FINER * window).T, quiet, trial.every)
+    return Spectra(trial, whitening @ values, frequencies, bands, whitening, window, starts, slopes)
+
+
+def _against(observer: Observer, whitener: ComplexArray, quiet: FloatArray, every: float) -> ComplexArray:
+    """What makes the noise in an observer's errors white and independent, (windows, bins, columns, columns).
+
+    whitener : of each column, at FINER points a bin;  quiet : (windows, bins, columns)
+    """
+    windows, bins, columns = quiet.shape
+    step = 2.0 * np.pi / (every * (2 * (len(whitener) - 1)))
+    points = np.arange(-NEAR, FINER * (bins - 1) + NEAR + 1)
+    transfer = observer.noise_transfer(points * step)
+    size = 1.0 / np.abs(whitener[np.abs(points)])
+    total = np.zeros((windows, bins, columns, columns), complex)
+    for k in range(columns):
+        part = transfer[..., k] * size[None, :, None, k]
+        power = of_windows(averaged(part[..., :, None] * part[..., None, :].conj(), bins), windows)
+        total += power / quiet[:, :, k, None, None] ** 2
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(total)))
 
 
 def windowed(rows: FloatArray, window: int, bins: int) -> ComplexArray:
@@ -151,7 +197,7 @@ def joined(values: ComplexArray, window: int, samples: int) -> FloatArray:
     """The samples of spectra of ``windowed``, shape (windows, bins) -> (samples,)."""
     hop = window // 2
     parts = np.fft.irfft(values * np.sqrt(window / 2.0), n=window, axis=-1) * sine(window)
-    total = np.zeros((len(parts) + 1) * hop)
+    total = np.zeros(max((len(parts) + 1) * hop, hop + samples))
     for k, part in enumerate(parts):
         total[k * hop : k * hop + window] += part
     return total[hop : hop + samples]

@@ -1,0 +1,238 @@
+"""Forces planted in a line of two rotors at known places, by the compiled model itself with its own noise."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.locate import NOWHERE, Localiser
+from hdrive_mbs.diagnosis.locate.motion import KnownForce, columns_of
+from hdrive_mbs.diagnosis.locate.observer import Observer, observer
+from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.trial import Trial
+from hdrive_mbs.diagnosis.unknowns import Factor
+from models import rotor_bench as bench
+
+SAMPLES, SPEED = 6000, 380.0
+"""1.5 s at 4 kHz; rad/s, between the first critical speeds of the bench."""
+TIMES = np.asarray(bench.SAMPLE_TIME * np.arange(SAMPLES), float)
+FACTORS = tuple(
+    Factor(path=bench.PATHS[name][0], name=name, nominal=dict.fromkeys(bench.PATHS[name], bench.NOMINAL[name]), sigma=bench.KNOWLEDGE[name])
+    for name in ("bearing_stiffness", "support_stiffness_y", "rotor_1_eccentricity")
+)
+NOMINAL = Hypothesis(factors=FACTORS)
+ORIGIN = np.zeros(NOMINAL.size)
+
+
+def trial() -> Trial:
+    """Steady rotation that the drive end is held to: probes at the rotors, accelerometers on the housings."""
+    scene = bench.undriven("run_up")
+    channels = bench.CHANNELS | {name: f"probe_{name}" for name in bench.PROBES}
+    items = {
+        name: Measured(
+            channel=channels[name],
+            noise=bench.NOISE[name],
+            resolution=bench.RESOLUTION[name],
+            offset=math.inf if name in bench.OFFSET_FREE else 0.0,
+        )
+        for name in bench.LATERAL
+    }
+    return Trial(
+        name="steady",
+        scene=scene,
+        every=bench.SAMPLE_TIME,
+        columns={name: np.zeros(SAMPLES) for name in items},
+        measured=items,
+        held_out=np.zeros(SAMPLES, dtype=bool),
+        speeds=dict.fromkeys(bench.POSITIONS, SPEED),
+        settled=True,
+        motions={"bearing_1": lambda time: SPEED * time},
+    )
+
+
+def turning() -> Trial:
+    """The spin under the controller of the run-up: the drive's torque and the angle of a bearing."""
+    measured = bench.bench().measured
+    return Trial(
+        name="turning",
+        scene=bench.build("run_up", hammer=dict.fromkeys("xy", (0.0, 0.0))),
+        every=bench.SAMPLE_TIME,
+        columns={name: np.zeros(SAMPLES) for name in bench.TORSION},
+        measured={name: measured[name] for name in bench.TORSION},
+        held_out=np.zeros(SAMPLES, dtype=bool),
+        speeds=dict.fromkeys(bench.POSITIONS, bench.REFERENCES["run_up"][1][0]),
+        settled=True,
+    )
+
+
+def localiser(*forces: KnownForce, errors: dict[str, np.ndarray] | None = None, bare: Trial | None = None) -> Localiser:
+    """Of a record with forces that the model lacks, or errors of columns; without a trial, of steady rotation."""
+    bare = bare or trial()
+    [simulated] = columns_of(Simulator([bare], bench.STEP), 0, NOMINAL, [ORIGIN], forces)
+    assert simulated is not None
+    rng = np.random.default_rng(11)
+    columns = {}
+    for name, values in simulated.items():
+        item = bare.measured[name]
+        offset = 2e-5 * rng.standard_normal() if item.offset else 0.0
+        read = values + offset + item.noise * rng.standard_normal(SAMPLES) + (errors or {}).get(name, 0.0)
+        columns[name] = item.resolution * np.round(read / item.resolution)
+    simulator = Simulator([dataclasses.replace(bare, columns=columns)], bench.STEP)
+    found = simulator.residuals(NOMINAL, [ORIGIN])[0]
+    assert found is not None
+    null = Fitted(
+        hypothesis=NOMINAL, z=ORIGIN, residuals=found, cost=0.0, curvature=np.eye(3), converged=True, steps=0, chi_fit=1.0, chi_held=1.0
+    )
+    return Localiser(simulator, null)
+
+
+def burst(size: float) -> np.ndarray:
+    """A force that no law of the library has: swelling beats near the first resonances of the line (some 400 and 900 rad/s)."""
+    return np.asarray(size * np.sin(4.0 * TIMES) ** 2 * (np.sin(410.0 * TIMES) + 0.5 * np.cos(930.0 * TIMES)), float)
+
+
+def along_x(**factors: float) -> KnownForce:
+    return KnownForce("planted", {f"{name.replace('__', '.')}.x": value for name, value in factors.items()}, TIMES, burst(5.0))
+
+
+@pytest.mark.parametrize(
+    ("place", "force"),
+    [
+        ("rotor_1", along_x(rotor_1=1.0)),
+        ("rotor_2", along_x(rotor_2=1.0)),
+        ("bearing_2.law", along_x(bearing_2=1.0, bearing_2__housing=-1.0)),
+        ("bearing_1.housing", along_x(bearing_1__housing=1.0)),
+        ("bearing_2", along_x(bearing_2=1.0)),
+    ],
+)
+def test_an_unknown_force_on_a_line_of_rotors_is_found_where_it_acts(place: str, force: KnownForce) -> None:
+    # 5 N move the rotors by micrometres near a resonance, some ten times the noise of the probes
+    best = localiser(force).places()[0]
+    assert best.at == place
+    assert best.probability > 0.5
+    assert best.share > 0.9
+
+
+def test_a_force_that_turns_with_the_shaft_is_found_as_one() -> None:
+    turning = [
+        KnownForce(f"planted {d}", {f"rotor_2.{d}": 1.0}, TIMES, 5.0 * wave(SPEED * TIMES)) for d, wave in (("x", np.cos), ("y", np.sin))
+    ]
+    best = localiser(*turning).places()[0]
+    assert best.at == "rotor_2" or "rotor_2" in best.tied
+
+
+def test_a_surface_that_is_not_round_is_found_at_the_sensors_of_its_station() -> None:
+    errors = {"r1_x": 2e-6 * np.cos(3.0 * SPEED * TIMES), "r1_y": 2e-6 * np.sin(3.0 * SPEED * TIMES)}
+    located = localiser(errors=errors)
+    best = located.places()[0]
+    assert best.at == "rotor_1.sensors"
+    assert best.probability > 0.9
+    courses = {course.way: course.force for course in located.force(best.at)}
+    inner = slice(600, 5400)
+    for column, error in errors.items():
+        assert np.std(courses[column][inner] - error[inner]) < 0.2 * np.std(error[inner])
+
+
+def test_one_probe_in_error_is_found_alone() -> None:
+    best = localiser(errors={"r2_y": burst(2e-6)}).places()[0]
+    assert best.at == "probe_r2_y"
+
+
+def test_a_line_of_rotors_without_a_gap_has_it_nowhere() -> None:
+    assert localiser().places()[0].at == NOWHERE
+
+
+def test_two_forces_that_no_single_place_explains_leave_a_doubt() -> None:
+    # 100 N on the stiff support beside 5 N on the soft rotor: both move what is near them by micrometres
+    course = 100.0 * np.cos(3.0 * TIMES) ** 2 * (np.cos(520.0 * TIMES) + np.sin(760.0 * TIMES))
+    located = localiser(along_x(rotor_1=1.0), KnownForce("other", {"bearing_2.housing.y": 1.0}, TIMES, course))
+    assert located.doubt.startswith("Not reliable here: the best single place leaves")
+    assert not located.trusted
+    # 100 N on some 1e7 N/m is far above the noise of 0.25 um; one place of four directions at most cannot make both
+    assert located.left > 10.0
+    assert located.places()[0].probability < 0.5
+
+
+def test_a_small_steady_torque_on_the_spin_is_no_place_but_a_doubt() -> None:
+    # it shifts the controller's torque by its own size, 0.05 N m: the noise of one sample, seen in 6000, all in one bin
+    located = localiser(KnownForce("planted", {"bearing_1": 1.0}, TIMES, np.full(SAMPLES, 0.05)), bare=turning())
+    best = located.places()[0]
+    assert best.at == NOWHERE
+    assert best.probability < 0.5
+    assert located.doubt.startswith("No place was found, yet")
+
+
+def test_a_torque_on_the_spin_is_tied_to_all_places_of_the_stiff_shaft() -> None:
+    # the shaft's torsional modes lie far above what a steady torque moves: where it acts along the shaft does not show
+    best = localiser(KnownForce("planted", {"bearing_1": 1.0}, TIMES, np.full(SAMPLES, 2.0)), bare=turning()).places()[0]
+    assert best.at != NOWHERE
+    assert best.probability < 0.5
+    assert len(best.tied) >= 3
+
+
+def test_the_course_of_a_force_on_a_rotor_comes_out() -> None:
+    [found] = [force for force in localiser(along_x(rotor_2=1.0)).force("rotor_2") if force.way == "x"]
+    inner, force = slice(600, 5400), burst(5.0)
+    left = found.force[inner] - force[inner]
+    assert np.sqrt(np.mean(left**2)) < 0.2 * np.sqrt(np.mean(force[inner] ** 2))
+    assert found.unit == "N"
+
+
+def test_the_errors_of_an_observer_forget_a_vibration_and_keep_the_noise_white() -> None:
+    place = localiser()
+    about = place._about
+    spectra = about.spectra[0]
+    # at the true parameters, the offsets taken out: nothing but noise, of mean square 1 in every band
+    left = np.abs(about.likelihood.residuals(0, place._nowhere.z)[1:-1]) ** 2
+    by_band = np.add.reduceat(left.mean(axis=(0, 2)), spectra.bands) / spectra.widths
+    # n numbers of a complex normal each: mean 1, standard deviation 1/sqrt(n); overlapping windows make it sqrt(1.5) times that
+    n = left.shape[0] * left.shape[2] * spectra.widths
+    assert np.all(np.abs(by_band[1:] - 1.0)[n[1:] > 300] < 5.0 * np.sqrt(1.5 / n[1:][n[1:] > 300]))
+
+
+def ringing() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Two oscillators of 300 and 700 rad/s with 0.5 % of critical damping, joined by what is read: x' = A x + B f, y = C x."""
+    a = np.zeros((4, 4))
+    for k, rate in enumerate((300.0, 700.0)):
+        a[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = [[0.0, 1.0], [-(rate**2), -0.01 * rate]]
+    b = np.array([[0.0, 0.0], [1.0, 0.3], [0.0, 0.0], [0.2, 1.0]])
+    c = np.array([[1.0, 0.0, 0.5, 0.0], [0.2, 0.0, -1.0, 0.0]])
+    return a, b, c, np.zeros((2, 2))
+
+
+def watching(length: int) -> Observer:
+    a, b, c, d = (part[None] for part in ringing())
+    return observer(a, b, c, d, np.full(2, 1e-9), bench.SAMPLE_TIME, length)
+
+
+def test_the_transfer_of_an_observer_is_that_of_its_errors() -> None:
+    samples = 4096
+    watcher = watching(samples)
+    rates = np.asarray(2.0 * np.pi * np.arange(samples // 2 + 1) / (samples * bench.SAMPLE_TIME), float)
+    for k in range(2):
+        impulse = np.zeros((1, 2, samples))
+        impulse[0, k, 0] = 1.0
+        spectrum = np.fft.rfft(watcher.errors(impulse)[0], axis=-1)
+        assert watcher.noise_transfer(rates)[0, :, :, k] == pytest.approx(spectrum.T, abs=1e-9)
+
+
+def test_an_observer_forgets_a_vibration_soon_after_its_force_has_ended() -> None:
+    a, b, c, _ = ringing()
+    samples, end, later = 3000, 1000, 1200
+    moved = expm(np.block([[a, b], [np.zeros((2, 6))]]) * bench.SAMPLE_TIME)
+    state, read = np.zeros(4), np.zeros((1, 2, samples))
+    for k in range(samples):
+        read[0, :, k] = c @ state
+        force = np.array([math.sin(300.0 * k * bench.SAMPLE_TIME), 0.0]) if k < end else np.zeros(2)
+        state = moved[:4, :4] @ state + moved[:4, 4:] @ force
+    errors = watching(samples).errors(read)[0]
+    # 50 ms later 0.5 % of damping has left exp(-0.005*300*0.05) = 93 % of the slow vibration
+    assert np.max(np.abs(read[0, :, later:])) > 0.5 * np.max(np.abs(read[0, :, :end]))
+    assert np.max(np.abs(errors[:, later:])) < 1e-3 * np.max(np.abs(errors[:, :end]))
