@@ -7,7 +7,7 @@ import importlib
 import inspect
 import itertools
 import pkgutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -89,27 +89,12 @@ def candidates(scene: Scene, kinds: Iterable[type[Effect]] | None = None) -> lis
             )
         for place in _places(kind, network):
             name = _free_name(scene, kind)
-            starts = tuple(item for effect in _starts(kind) if _fits(scene, item := Added(effect, place, name)))
+            options = _options(kind)
+            starts = tuple(item for effect in _made(kind, options) if _fits(scene, item := Added(effect, place, name)))
             if starts:
-                found.append(Candidate(kind, place, starts, _middle(starts)))
+                first = tuple(item for effect in _made(kind, _few(kind, options)) if _fits(scene, item := Added(effect, place, name)))
+                found.append(Candidate(kind, place, starts, first or starts[:1]))
     return found
-
-
-def _middle(starts: tuple[Added, ...]) -> tuple[Added, ...]:
-    """Starts whose searched shapes are in the middle of those that occur; every combination of the others."""
-    kind = type(starts[0].effect)
-    varied = _varied(starts)
-    shapes = [name for name, item in _quantities(kind).items() if item.typical is not None and item.low != 0.0 and name in varied]
-    middle = {}
-    for name in shapes:
-        values = sorted({getattr(item.effect, name) for item in starts})
-        middle[name] = values[len(values) // 2]
-    return tuple(item for item in starts if all(getattr(item.effect, name) == value for name, value in middle.items())) or starts[:1]
-
-
-def _varied(starts: tuple[Added, ...]) -> set[str]:
-    names = [item.name for item in dataclasses.fields(starts[0].effect)]
-    return {name for name in names if len({repr(getattr(item.effect, name)) for item in starts}) > 1}
 
 
 def _free_name(scene: Scene, kind: type[Effect]) -> str:
@@ -144,8 +129,8 @@ def _fits(scene: Scene, item: Added) -> bool:
     return True
 
 
-def _starts(kind: type[Effect]) -> Iterator[Effect]:
-    """The effect at each combination of start values of its shapes and choices."""
+def _options(kind: type[Effect]) -> dict[str, tuple[Any, ...]]:
+    """Start values of its shapes and choices, by field."""
     chosen: dict[str, tuple[Any, ...]] = {}
     phases = {phase for _, phase in kind.vectors}
     count = SHAPES.get(sum(_is_shape(name, item, kind) for name, item in _quantities(kind).items()), 1)
@@ -163,11 +148,27 @@ def _starts(kind: type[Effect]) -> Iterator[Effect]:
                 chosen[name] = tuple(low * (high / low) ** end for end in ends)
     for name, values in kind.starts.items():
         chosen.setdefault(name, tuple(values))
-    combinations = list(itertools.product(*chosen.values()))
+    return chosen
+
+
+def _few(kind: type[Effect], options: Mapping[str, tuple[Any, ...]]) -> dict[str, tuple[Any, ...]]:
+    """Those for a first look: of a shape that is searched the middle one, of a number of either sign the smallest."""
+    found = dict(options)
+    for name, quantity in _quantities(kind).items():
+        if name in options and quantity.typical is not None and quantity.low != 0.0 and name not in kind.decisive:
+            values = sorted(options[name])
+            either = values[0] < 0.0 < values[-1]
+            found[name] = (min(values, key=abs) if either else values[len(values) // 2],)
+    return found
+
+
+def _made(kind: type[Effect], options: Mapping[str, tuple[Any, ...]]) -> Iterator[Effect]:
+    """The effect at each combination of start values that is allowed."""
+    combinations = list(itertools.product(*options.values()))
     thinned = combinations[:: -(-len(combinations) // MOST)] if _continuous(kind) else combinations
     for combination in thinned:
         try:
-            yield kind(**dict(zip(chosen, combination, strict=True)))
+            yield kind(**dict(zip(options, combination, strict=True)))
         except HdriveError:
             continue
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -19,12 +19,14 @@ from hdrive_mbs.diagnosis.search import (
     Report,
     Search,
     Task,
+    alone,
     enough,
     fit_nominal,
     joined,
     run_task,
     scored,
     search,
+    suspects,
     swapped,
 )
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -66,6 +68,12 @@ def _second(said: Report, stage: str, done: int, total: int) -> None:
     said(f"second cause: {stage}", done, total)
 
 
+def _with(search_: Search, more: Sequence[Found]) -> Search:
+    """A search that found some more."""
+    found = sorted((*search_.found, *(scored(item, search_.base) for item in more)), key=lambda item: -item.log_odds)
+    return replace(search_, found=tuple(found))
+
+
 def gather(
     coarse: Simulator,
     fine: Simulator,
@@ -90,7 +98,6 @@ def gather(
     if first is not None and first.log_odds > 0.0 and first.fitted.chi_fit > enough(null, LEFT):
         again = partial(_second, said)
         pair = search(team, coarse, first.fitted, groups, tried, depth=SHALLOW, report=again)
-    serious = single.labels[:SINGLES]
     double: tuple[Found, ...] = ()
     if pair is not None and first is not None:
         both = joined(team, coarse, first, single.labels[1 : JOINED + 1])
@@ -99,6 +106,8 @@ def gather(
             best = min(together, key=lambda item: item.fitted.cost)
             other = swapped(team, coarse, best, first.suspect.label, single.labels[: SINGLES + 1])
             double = (min((best, *other), key=lambda item: item.fitted.cost),)
+            single = _with(single, alone(team, coarse, double[0], suspects(null.hypothesis, groups, tried)))
+    serious = single.labels[:SINGLES]
     near = null.chi_fit < NEAR
     share = EXACT if near else FINE
     tasks = [

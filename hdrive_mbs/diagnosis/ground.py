@@ -1,6 +1,12 @@
-"""Points from which everything is looked at: a fitted model, and the same with the values of the data sheet."""
+"""Points from which everything is looked at: a fitted model, and the same with its parameters held where they are likely.
+
+What is missing bends the fitted parameters, to the end of what they may be where it is strong; from there the cause may
+not show.  From the data sheet's own values the step is too long for a linear one where a resonance is sharp.
+"""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -12,14 +18,19 @@ from hdrive_mbs.diagnosis.simulator import Simulator
 
 FloatArray = npt.NDArray[np.float64]
 
+LIKELY = 2.0
+"""Prior standard deviations that a parameter may be off while it is held."""
+STEPS, SHARE = 12, 1e-2
+"""Of that fit: most steps, and relative change of the cost that ends it."""
+
 
 def screen_from(simulator: Simulator, model: Fitted) -> Screen:
     """Looks at candidates from a model at a point, with its Jacobian there."""
     return Screen(simulator, model, jacobian(simulator, model.hypothesis, model.z, model.residuals))
 
 
-def reset(simulator: Simulator, model: Fitted) -> Fitted:
-    """The model with its parameters where the data sheet has them, and its causes as they were found; not fitted.
+def held(simulator: Simulator, model: Fitted) -> Fitted:
+    """The model with its parameters within LIKELY deviations of the data sheet, fitted from there, and its causes as they were found.
 
     Where this cannot be run, the model as it is.
     """
@@ -27,7 +38,9 @@ def reset(simulator: Simulator, model: Fitted) -> Fitted:
     residuals = simulator.residuals(model.hypothesis, [start])[0]
     if residuals is None:
         return model
-    return fit(simulator, model.hypothesis, start, steps=0, begin=residuals)
+    factors = tuple(replace(item, most=LIKELY) for item in model.hypothesis.factors)
+    found = fit(simulator, replace(model.hypothesis, factors=factors), start, steps=STEPS, share=SHARE, begin=residuals)
+    return replace(found, hypothesis=model.hypothesis)
 
 
 def as_known(hypothesis: Hypothesis, z: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.evidence import log_evidence
 from hdrive_mbs.diagnosis.fit import Fitted, fit
-from hdrive_mbs.diagnosis.ground import as_known, reset, screen_from
+from hdrive_mbs.diagnosis.ground import as_known, held, screen_from
 from hdrive_mbs.diagnosis.hops import settled
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.screening import Look, Screen
@@ -34,8 +34,7 @@ HOPS, NEAR = 3, 3.0
 """Hops out of hollows for the nominal model, which everything else is held against, and the mean square up to which they help
 and up to which it is worth a fit as sharp as that of the causes: farther away they lead nowhere."""
 FAR = 1.3
-"""Mean square of a fitted model above which everything is looked at from the data sheet's values too: a cause that is
-missing has bent them, and from there it may not show."""
+"""Mean square of a fitted model above which everything is looked at with held parameters too (see ground.py)."""
 ENOUGH = 1.1
 """Mean square that ends the search; see ``enough``."""
 SMALL = 0.05
@@ -164,7 +163,7 @@ def search(
 
     One simple law stands for each label in the first look.  The best labels are looked at with all laws and starts,
     the best of those get a few joint steps with their own Jacobians, and the best of these are fitted to the end.
-    Where all of them leave something, the same is done from the values of the data sheet.
+    Where all of them leave something, the same is done with the parameters held near the values of the data sheet.
     What came out best is then tried at all other places where it may sit, from the values found.
     """
     how = depth or Depth()
@@ -172,7 +171,7 @@ def search(
     everything = suspects(base.hypothesis, groups, tried)
     found, looks = work.from_ground(base, base, everything)
     if base.chi_fit > FAR and not any(item.fitted.chi_fit < enough(base, ENOUGH) for item in found):
-        more, others = work.from_ground(reset(simulator, base), base, everything)
+        more, others = work.from_ground(held(simulator, base), base, everything)
         found = _cheapest([*found, *more])
         looks = {name: min(cost, looks.get(name, cost)) for name, cost in (looks | others).items()}
     if how.laws > 1:
@@ -363,6 +362,25 @@ def swapped(team: Team, simulator: Simulator, pair: Found, first: Label, others:
         tasks.append(Task(hypothesis, hypothesis.start(pair.fitted.hypothesis.nominal_part(pair.fitted.z)), None, ELSEWHERE, FINE))
         names.append(pair.suspect)
     return _those_that_ran(names, team.map(run_task, simulator, tasks))
+
+
+def alone(team: Team, simulator: Simulator, pair: Found, everything: Sequence[Suspect]) -> list[Found]:
+    """The second cause of a pair without the first, from the values of the pair.
+
+    The first may have done no more than bring the parameters to where the second shows.
+    """
+    fitted = pair.fitted
+    full = fitted.hypothesis.rescaled(fitted.z)[0]
+    label = pair.suspect.label
+    tasks, whose = [], []
+    for suspect in everything:
+        if suspect.label == label and suspect.law == pair.suspect.law:
+            old = suspect.all[0]
+            added = full.added[-1:] if old.added else ()
+            hypothesis = Hypothesis(old.factors, tuple(Added(item.effect, item.at, old.added[-1].name) for item in added), old.loose)
+            tasks.append(Task(hypothesis, hypothesis.start(fitted.hypothesis.nominal_part(fitted.z)), None, CONVERGED, FINE))
+            whose.append(suspect)
+    return _those_that_ran(whose, team.map(run_task, simulator, tasks))
 
 
 def scored(found: Found, base: Fitted) -> Found:

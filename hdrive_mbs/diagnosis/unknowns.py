@@ -75,6 +75,8 @@ def _normal(z: Sequence[float]) -> float:
 class Factor(Unknown):
     """A nominal parameter; ``wide`` widens its prior where the parameter itself is under suspicion.
 
+    most : prior standard deviations that it may be off where it is not under suspicion
+
     p/p0 = 1 + sigma z down to STRAIGHT, and from there b exp((1 + sigma z - b)/b) with b = STRAIGHT: positive and smooth.
     Straight, because inertias and drags enter as sums: what only their sum determines is then a straight valley.
     """
@@ -83,6 +85,7 @@ class Factor(Unknown):
     nominal: Mapping[str, float]
     sigma: float
     wide: float = 1.0
+    most: float = TOLERANCE
 
     def values(self, z: Sequence[float]) -> dict[str, float]:
         return {path: value * self.ratio(z[0]) for path, value in self.nominal.items()}
@@ -98,7 +101,7 @@ class Factor(Unknown):
     def clipped(self, z: Sequence[float]) -> tuple[float, ...]:
         most = FARTHEST / (self.sigma * self.wide)
         if self.wide == 1.0:
-            most = min(most, TOLERANCE)
+            most = min(most, self.most)
         return (min(max(z[0], -most), most),)
 
     def step(self, z: Sequence[float]) -> float:

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.search import Found, Label
 
-ODDS, PARAMETER_ODDS = 8.0, 4.5
+ODDS, PARAMETER_ODDS = 18.0, 4.5
 """Log odds below which an effect, and a parameter out of its tolerance, is not claimed.  There are many laws, which
-nibble at what every model leaves, and few parameters."""
+nibble at what every model leaves, like permilles in what a data sheet calls exact, and few parameters."""
 CLEAN = 1.15
 """Mean square of the refitted nominal model up to which its misfit counts as noise."""
 EXPLAINED = 0.5

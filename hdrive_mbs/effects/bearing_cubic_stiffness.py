@@ -32,6 +32,7 @@ class BearingCubicStiffness(BearingEffect):
     family: ClassVar[str] = "bearing_cubic_stiffness"
     signature: ClassVar[str] = "resonances that bend to higher speed with the amplitude, jumps in run-up and run-down, a third harmonic"
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"stiffness": (1e15, 1e16, 1e17, 1e18)}
+    decisive: ClassVar[tuple[str, ...]] = ("stiffness",)
 
     def added(self, s: Across, v: Across, law: BearingDraft) -> Mapping[str, Value]:
         x, y = s["x"], s["y"]

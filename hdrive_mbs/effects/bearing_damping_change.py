@@ -28,7 +28,7 @@ class BearingDampingChange(BearingEffect):
 
     family: ClassVar[str] = "bearing_damping"
     signature: ClassVar[str] = "another height of resonances and another decay, at the same frequencies"
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"change": (-0.5, 1.0)}
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"change": (-0.5, 1e-4, 1.0)}
 
     def added(self, s: Across, v: Across, law: BearingDraft) -> Mapping[str, Value]:
         return {key: self.change * law.damper(key, v) for key in "xy"}

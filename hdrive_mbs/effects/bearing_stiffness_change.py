@@ -28,7 +28,7 @@ class BearingStiffnessChange(BearingEffect):
 
     family: ClassVar[str] = "bearing_stiffness"
     signature: ClassVar[str] = "shifted resonances, most in modes that move this bearing; linear, the same at every amplitude"
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"change": (-0.2, 0.2)}
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"change": (-0.2, 1e-4, 0.2)}
 
     def added(self, s: Across, v: Across, law: BearingDraft) -> Mapping[str, Value]:
         return {key: self.change * law.spring(key, s, v) for key in "xy"}

@@ -42,6 +42,7 @@ class HiddenModeSupport(Effect):
         "one resonance more or one that is split, and a notch of this housing where the attached mass swings against it"
     )
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"natural_frequency": (200.0, 400.0, 600.0, 800.0)}
+    decisive: ClassVar[tuple[str, ...]] = ("natural_frequency",)
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         support = draft.support(place, "HiddenModeSupport")

@@ -27,7 +27,7 @@ class SupportDampingChange(SupportEffect):
 
     family: ClassVar[str] = "support_damping"
     signature: ClassVar[str] = "another height of resonances and another decay, at the same frequencies, where this housing moves"
-    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"change": (-0.5, 1.0)}
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"change": (-0.5, 1e-4, 1.0)}
 
     def added(self, direction: str, x: Value, rate: Value, support: SupportDraft) -> Value:
         return self.change * support.damping[direction] * rate

@@ -30,7 +30,7 @@ class SupportMassChange(Effect):
     kind: ClassVar[str] = "parametric"
     family: ClassVar[str] = "support_mass"
     signature: ClassVar[str] = "shifted upper resonances where this housing moves, smaller acceleration of the housing at high speed"
-    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"change": (-0.3, 0.5)}
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"change": (-0.3, 1e-4, 0.5)}
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         support = draft.support(place, "SupportMassChange")

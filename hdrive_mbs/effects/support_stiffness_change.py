@@ -27,7 +27,7 @@ class SupportStiffnessChange(SupportEffect):
 
     family: ClassVar[str] = "support_stiffness"
     signature: ClassVar[str] = "shifted resonances, most in modes that move this housing; linear, the same at every amplitude"
-    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"change": (-0.2, 0.2)}
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"change": (-0.2, 1e-4, 0.2)}
 
     def added(self, direction: str, x: Value, rate: Value, support: SupportDraft) -> Value:
         return self.change * support.spring(direction, x)
