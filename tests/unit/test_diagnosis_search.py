@@ -8,13 +8,17 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
+from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import fit, jacobian, secant
+from hdrive_mbs.diagnosis.ground import held
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
-from hdrive_mbs.diagnosis.search import ENOUGH, Task, enough, run_task
+from hdrive_mbs.diagnosis.search import ENOUGH, Found, Task, alone, enough, run_task, suspects
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.errors import AnalysisError
-from tests.unit.diagnosis_cases import bench, quiet
+from models import rotor_bench
+from tests.unit.diagnosis_cases import bench, quiet, records
 
 BENCH = bench()
 
@@ -69,3 +73,40 @@ def test_more_is_left_over_beside_a_strong_cause(simulator: Simulator) -> None:
     fitted = fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=0)
     assert enough(dataclasses.replace(fitted, chi_fit=1.5), ENOUGH) == ENOUGH
     assert ENOUGH < enough(dataclasses.replace(fitted, chi_fit=1e4), ENOUGH) < 2.0
+
+
+def test_a_first_look_begins_where_a_change_hardly_changes_anything_and_takes_every_decisive_start() -> None:
+    scene = rotor_bench.bench().scene
+    changes = {item.effect.change for one in candidates(scene, [hm.SupportStiffnessChange]) for item in one.first}  # type: ignore[attr-defined]
+    assert changes == {1e-4}
+    for one in candidates(scene, [hm.HiddenModeSupport]):
+        assert {item.effect.natural_frequency for item in one.first} == set(hm.HiddenModeSupport.starts["natural_frequency"])  # type: ignore[attr-defined]
+
+
+def test_held_parameters_stay_near_the_data_sheet(simulator: Simulator) -> None:
+    """The drag that is missing would bend them farther."""
+    missing = Simulator(BENCH.trials(records((hm.CoulombStribeckFriction(coulomb=8.0), "load"))[0]), 2.5e-4, 4)
+    hypothesis = Hypothesis(factors_of(BENCH))
+    free = fit(missing, hypothesis, np.zeros(hypothesis.size), steps=25)
+    near = held(missing, free)
+    assert np.max(np.abs(free.z)) > 2.5
+    assert np.max(np.abs(near.z)) == pytest.approx(2.0)
+    assert free.cost < near.cost < fit(missing, hypothesis, np.zeros(hypothesis.size), steps=0).cost
+    assert near.hypothesis is free.hypothesis
+
+
+def test_a_second_cause_is_tried_without_the_first(simulator: Simulator) -> None:
+    """The load's drag is missing; a pair says so beside a drag at the motor that is none."""
+    missing = Simulator(BENCH.trials(records((hm.CoulombStribeckFriction(coulomb=4.0), "load"))[0]), 2.5e-4, 4)
+    factors = factors_of(BENCH)
+    tried = candidates(BENCH.scene, [hm.CoulombStribeckFriction, hm.QuadraticDrag])
+    everything = suspects(Hypothesis(factors), {}, tried)
+    [true] = [item for item in everything if item.label == ("friction", "load")]
+    [false] = [item for item in everything if item.label == ("quadratic_drag", "motor")]
+    both = Hypothesis(factors, (*false.first[0].added, *true.first[0].added))
+    pair = Found(true, fit(missing, both, both.start(), steps=12))
+    with Team(1) as team:
+        [single] = alone(team, missing, pair, everything)
+    assert single.suspect.label == ("friction", "load")
+    assert len(single.fitted.hypothesis.added) == 1
+    assert single.fitted.chi_fit == pytest.approx(pair.fitted.chi_fit, rel=0.02)
