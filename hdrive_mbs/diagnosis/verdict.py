@@ -17,6 +17,9 @@ from hdrive_mbs.diagnosis.search import Found, Label
 ODDS, PARAMETER_ODDS = 18.0, 4.5
 """Log odds below which an effect, and a parameter out of its tolerance, is not claimed.  There are many laws, which
 nibble at what every model leaves, like permilles in what a data sheet calls exact, and few parameters."""
+TRACE = 3e-4
+"""Mean square that an effect has to take away besides: less, a sixtieth of the noise's rms, is what steps of the integration and
+smoothed inputs leave in a simulation, and long records show it."""
 CLEAN = 1.15
 """Mean square of the refitted nominal model up to which its misfit counts as noise."""
 EXPLAINED = 0.5
@@ -62,7 +65,7 @@ def judge(null_misfit: float, found: Sequence[Found], pair: Found | None) -> Cla
     null_misfit : what the refitted nominal model leaves, see ``left``
     found : single causes on all samples, best first;  pair : the best pair, its log odds those over the nominal model
     """
-    singles = [item for item in found if item.log_odds > _needs(item)]
+    singles = [item for item in found if _excess(item, null_misfit) > 0.0]
     best = singles[0] if singles else None
     if best is None:
         kind = "none" if null_misfit <= CLEAN else "unknown"
@@ -78,9 +81,12 @@ def judge(null_misfit: float, found: Sequence[Found], pair: Found | None) -> Cla
     return Claim(kind_of(chosen), chosen, tied, probabilities)
 
 
-def _needs(found: Found) -> float:
-    """Log odds that a single cause needs."""
-    return PARAMETER_ODDS if found.suspect.label[0] == "parameter" else ODDS
+def _excess(found: Found, null_misfit: float) -> float:
+    """Log odds of a single cause beyond those that it needs."""
+    if found.suspect.label[0] == "parameter":
+        return found.log_odds - PARAMETER_ODDS
+    shows = null_misfit - left(found.fitted) > TRACE
+    return found.log_odds - ODDS if shows else min(found.log_odds - ODDS, -TEMPERATURE)
 
 
 def explains(before: float, after: float) -> bool:
@@ -120,7 +126,7 @@ def _probabilities(found: Sequence[Found], chosen: Found | None, null_misfit: fl
     scores: dict[Label, float] = {NONE: 0.0}
     for item in found:
         label = item.suspect.label
-        scores[label] = max(scores.get(label, -math.inf), (item.log_odds - _needs(item)) / TEMPERATURE)
+        scores[label] = max(scores.get(label, -math.inf), _excess(item, null_misfit) / TEMPERATURE)
     both = [item.label for item in chosen.fitted.hypothesis.added] if chosen is not None and chosen not in found else []
     if both:
         scores = dict.fromkeys(both[:1], max(scores.values()) + PAIR / TEMPERATURE) | {k: v for k, v in scores.items() if k not in both}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -13,9 +14,10 @@ from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import fit, jacobian, secant
 from hdrive_mbs.diagnosis.ground import held
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
-from hdrive_mbs.diagnosis.search import ENOUGH, Found, Task, alone, enough, run_task, suspects
+from hdrive_mbs.diagnosis.search import ENOUGH, Found, Suspect, Task, alone, enough, run_task, suspects
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.team import Team
+from hdrive_mbs.diagnosis.verdict import judge
 from hdrive_mbs.errors import AnalysisError
 from models import rotor_bench
 from tests.unit.diagnosis_cases import bench, quiet, records
@@ -110,3 +112,16 @@ def test_a_second_cause_is_tried_without_the_first(simulator: Simulator) -> None
     assert single.suspect.label == ("friction", "load")
     assert len(single.fitted.hypothesis.added) == 1
     assert single.fitted.chi_fit == pytest.approx(pair.fitted.chi_fit, rel=0.02)
+
+
+@pytest.mark.parametrize(("drop", "odds", "kind"), [(0.5e-4, 40.0, "none"), (2e-3, 40.0, "effect"), (2e-3, 12.0, "none")])
+def test_an_effect_needs_odds_and_a_gap_that_it_closes(simulator: Simulator, drop: float, odds: float, kind: str) -> None:
+    """Long records give high odds to what the steps of an integration leave."""
+    hypothesis = Hypothesis(factors_of(BENCH), (Added(hm.ViscousDrag(coefficient=0.01), "load", "drag"),))
+    fitted = dataclasses.replace(fit(simulator, hypothesis, hypothesis.start(), steps=0), chi_fit=0.9996 - drop, chi_held=1.0018 - drop)
+    found = Found(Suspect(("viscous_drag", "load"), "ViscousDrag", (hypothesis,), (hypothesis,)), fitted, odds)
+    claim = judge(math.sqrt(0.9996 * 1.0018), [found], None)
+    assert claim.kind == kind
+    assert max(claim.probabilities, key=lambda label: claim.probabilities[label]) == (
+        ("none", "") if kind == "none" else found.suspect.label
+    )
