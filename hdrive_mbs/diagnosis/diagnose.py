@@ -164,7 +164,9 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
 def _located(evidence: Evidence, notes: list[str]) -> tuple[tuple[Place, ...], Localiser | None]:
     """Places of the gap, most probable first; a note where they cannot be found."""
     try:
-        localiser = Localiser(evidence.fine, evidence.null)
+        # on a rotor line the localisation refits on its own, and a missing cause bends the fitted model most
+        lateral = evidence.fine.trials[0].scene.network().is_lateral
+        localiser = Localiser(evidence.fine, evidence.nominal if lateral else evidence.null)
         if localiser.doubt:
             notes.append(f"Place of the gap: {localiser.doubt}")
         return localiser.places(), localiser
