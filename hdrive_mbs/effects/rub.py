@@ -45,7 +45,7 @@ class Rub(LateralEffect):
     signature: ClassVar[str] = (
         "clipped resonances that are drawn to higher speed, harmonics and subharmonics in bursts, backward parts, a brake on the spin"
     )
-    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"gap": (1e-5, 3e-5, 1e-4), "stiffness": (1e6,)}
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"gap": (1e-5, 3e-5, 1e-4, 2e-4, 3e-4, 5e-4), "stiffness": (1e6,)}
     decisive: ClassVar[tuple[str, ...]] = ("gap",)
 
     def _contact(self, speed: Value, x: Value, y: Value, x_rate: Value, y_rate: Value) -> tuple[Value, Value, Value, Value]:
