@@ -32,9 +32,11 @@ import hdrive_mbs as hm
 from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 from hdrive_mbs.diagnosis.bench import Bench, Uncertain, even_step, held_out
+from hdrive_mbs.diagnosis.experiment.plan import Course, Plan
+from hdrive_mbs.diagnosis.experiment.rotor_menu import rotor_menu
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.trial import Trial
-from hdrive_mbs.errors import RecordError
+from hdrive_mbs.errors import ParameterError, RecordError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
@@ -153,6 +155,10 @@ CHANNELS: dict[str, str] = {
 }
 """Column of a record -> channel of the scene.  With a measured spin there is no torque to compare."""
 
+SPEED = "speed_reference"
+"""Input of a planned record."""
+MENU_TIME = 3.0
+"""Of the records that are proposed [s]."""
 INPUTS = ("hammer_x", "hammer_y")
 HELD = ("motor_torque", *INPUTS)
 """Columns of what is held from a sample on: compare them with the scene half a sample later."""
@@ -353,6 +359,11 @@ def held_control(record: str, free: hm.Scene) -> tuple[FloatArray, FloatArray, F
 
     free : the bench without its drive, see ``undriven``
     """
+    return _under_control(free, np.interp(sample_times(record), *REFERENCES[record]))
+
+
+def _under_control(free: hm.Scene, references: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """``held_control`` for references at samples [rad/s]; all turns at the first of them at the start."""
     network = free.without("gravity").network()  # the weight of an eccentric rotor is no constant stiffness
     spins = [k for k, body in enumerate(network.bodies) if not body.lateral]
     zero = dict.fromkeys((body.name for body in network.bodies), 0.0)
@@ -365,8 +376,7 @@ def held_control(record: str, free: hm.Scene) -> tuple[FloatArray, FloatArray, F
     rates[n : 2 * n, 2 * n] = np.linalg.solve(mass, np.eye(n)[drive])
     moved = expm(rates * SAMPLE_TIME)
     state = np.zeros(2 * n + 1)
-    state[n : 2 * n] = REFERENCES[record][1][0]
-    references = np.interp(sample_times(record), *REFERENCES[record])
+    state[n : 2 * n] = references[0]
     torques, states = np.zeros(len(references)), np.zeros((len(references) + 1, 2))
     for k, reference in enumerate(references.tolist()):
         states[k] = state[drive], state[n + drive]
@@ -377,10 +387,13 @@ def held_control(record: str, free: hm.Scene) -> tuple[FloatArray, FloatArray, F
 
 
 def _controller(record: str, free: hm.Scene) -> HeldSpeedControl:
+    return _controller_of(REFERENCES[record], *held_control(record, free)[:2])
+
+
+def _controller_of(reference: Course, angles: FloatArray, speeds: FloatArray) -> HeldSpeedControl:
     """The controller with what the line does under it; a change is a steep line centred on its sample."""
-    angles, speeds, _ = held_control(record, free)
-    times = sample_times(record)
-    mean, error = np.diff(angles) / SAMPLE_TIME, np.interp(times, *REFERENCES[record]) - speeds[:-1]
+    times = SAMPLE_TIME * np.arange(len(angles) - 1)
+    mean, error = np.diff(angles) / SAMPLE_TIME, np.interp(times, *reference) - speeds[:-1]
     half, rise = 0.5 * EDGE * SAMPLE_TIME, 0.5 * np.diff(speeds)
 
     def twice(first: FloatArray, second: FloatArray) -> tuple[float, ...]:
@@ -393,8 +406,8 @@ def _controller(record: str, free: hm.Scene) -> HeldSpeedControl:
         times=twice(times + half, times + SAMPLE_TIME - half),
         errors=twice(error, error),
         speeds=twice(mean - rise, mean + rise),
-        asked_times=REFERENCES[record][0],
-        asked_speeds=REFERENCES[record][1],
+        asked_times=tuple(map(float, reference[0])),
+        asked_speeds=tuple(map(float, reference[1])),
     )
 
 
@@ -452,9 +465,9 @@ NAMES: dict[tuple[str, str], tuple[str, str]] = {
 STILL = hm.AngleTable(times=(0.0, 1.0), angles=(0.0, 0.0))
 
 
-def _hammer(record: str) -> hm.LateralForce:
+def _hammer(blows: Mapping[str, FloatArray]) -> hm.LateralForce:
     """The hammer of a record; in most it does next to nothing, so that all records share their equations."""
-    blows = _blows(record) or {"x": np.zeros(2), "y": np.full(2, 1e-30)}  # two tables, like those of two blows
+    blows = blows or {"x": np.zeros(2), "y": np.full(2, 1e-30)}  # two tables, like those of two blows
     times = SAMPLE_TIME * np.arange(len(blows["x"]))
     return hm.LateralForce(times=tuple(times), held=True, forces_x=tuple(blows["x"]), forces_y=tuple(blows["y"]))
 
@@ -481,20 +494,67 @@ class RotorBench(Bench):
             follower = _measured_spin(record.name, free, record.times - record.times[0], columns["spin_angle"])
             assert isinstance(follower.motion, hm.SpeedProfile)
             spin = follower.motion
-        scene = self.scene.replacing({"drive.characteristic": _controller(record.name, free), "hammer": _hammer(record.name)})
+        scene = self.scene.replacing({"drive.characteristic": _controller(record.name, free), "hammer": _hammer(_blows(record.name))})
+        begin = REFERENCES[record.name][1][0]
+        return self._views(record.name, scene, spin, begin, columns, held_out(len(record), record.name), even_step(record))
+
+    def planned(self, plan: Plan) -> tuple[Trial, ...]:
+        """Inputs of a plan: speed_reference [rad/s], and the hammer on rotor 1, hammer_x and hammer_y [N]; sampled like the records.
+
+        Raises ParameterError for another input or sample time.
+        """
+        if unknown := set(plan.inputs) - {SPEED, *INPUTS}:
+            raise ParameterError(f"Plan {plan.name!r}: no input {min(unknown)!r}; the rotor bench has {SPEED}, {', '.join(INPUTS)}.")
+        if not math.isclose(plan.every, SAMPLE_TIME):
+            raise ParameterError(f"Plan {plan.name!r}: every = {plan.every:g} s; the rotor bench samples every {SAMPLE_TIME:g} s.")
+        references = plan.sampled(SPEED)
+        angles, speeds, _ = _under_control(undriven("run_up"), references)
+        blows = {d: plan.sampled(f"hammer_{d}") for d in "xy"} if set(plan.inputs) & set(INPUTS) else {}
+        controller = _controller_of((plan.times, references), angles, speeds)
+        scene = self.scene.replacing({"drive.characteristic": controller, "hammer": _hammer(blows)})
+        spin = hm.AngleTable(times=tuple((SAMPLE_TIME * np.arange(len(angles))).tolist()), angles=tuple(angles.tolist()))
+        moving = bool(np.any(references != 0.0))
+        columns = {name: np.zeros(plan.samples) for name in (*LATERAL, *(TORSION if moving else ()))}
+        seen = np.zeros(plan.samples, bool)
+        return self._views(plan.name, scene, spin if moving else STILL, float(references[0]), columns, seen, SAMPLE_TIME)
+
+    def menu(self) -> tuple[Plan, ...]:
+        """Records of 3 s at other speeds than those of the bench's own, and blows on rotor 1 while it turns."""
+        top = max(REFERENCES["run_up"][1])
+        critical = hm.campbell(undriven("run_up"), np.linspace(0.0, top, 11)).critical_speeds
+        turning = rotor_menu(SPEED, top=top, seconds=MENU_TIME, every=SAMPLE_TIME, critical=critical[:1].tolist())
+        times = SAMPLE_TIME * np.arange(round(MENU_TIME / SAMPLE_TIME))
+        blows: dict[str, Course] = {}
+        for d, first in HAMMER.items():
+            since = (times - first) % (MENU_TIME / 3.0)
+            blows[f"hammer_{d}"] = times, np.where(since < BLOW_TIME, BLOW * np.sin(np.pi * since / BLOW_TIME), 0.0)
+        slow = {SPEED: ((0.0, 0.02), (0.0, 0.25 * top)), **blows}
+        return (*turning, Plan(name="blows at a quarter of the top speed", inputs=slow, duration=MENU_TIME, every=SAMPLE_TIME))
+
+    def _views(
+        self,
+        name: str,
+        scene: hm.Scene,
+        spin: hm.SpeedProfile,
+        begin: float,
+        columns: Mapping[str, FloatArray],
+        held: npt.NDArray[np.bool_],
+        every: float,
+    ) -> tuple[Trial, ...]:
+        """Both views of a record, as far as it has their columns; begin : speed at the start [rad/s]."""
         found = []
-        for view, wanted in (("lateral", LATERAL), ("torsion", TORSION if moving else ())):
-            here = [name for name in wanted if name in columns]
+        for view, wanted in (("lateral", LATERAL), ("torsion", TORSION if spin is not STILL else ())):
+            here = [column for column in wanted if column in columns]
             if here:
                 found.append(
                     Trial(
-                        name=f"{record.name}, {view}",
+                        name=f"{name}, {view}",
                         scene=scene,
-                        every=even_step(record),
-                        columns={name: columns[name] for name in here},
-                        measured={name: self.measured[name] for name in here},
-                        held_out=held_out(len(record), record.name),
-                        speeds=dict.fromkeys(POSITIONS, REFERENCES[record.name][1][0]),
+                        every=every,
+                        columns={column: columns[column] for column in here},
+                        measured={column: self.measured[column] for column in here},
+                        held_out=held,
+                        speeds=dict.fromkeys(POSITIONS, begin),
                         settled=True,
                         motions={"bearing_1": spin.angle} if view == "lateral" else {},
                     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -63,7 +63,7 @@ class Bench:
     searched : names of records on which causes are searched, all if not given; the best are fitted to all records in the end.
         Leave out a long record that shows little that the others do not
 
-    Subclasses override ``trials`` (and ``planned``) where a record needs more than its columns put into the scene.
+    Subclasses override ``trials`` (and ``planned`` and ``menu``) where a record needs more than its columns put into the scene.
     """
 
     scene: Scene
@@ -144,6 +144,10 @@ class Bench:
                 speeds=self.speeds,
             ),
         )
+
+    def menu(self) -> Sequence[Plan] | None:
+        """Records that could be taken next, None for those that suit a motor with or without a load (experiment/menu.py)."""
+        return None
 
     def columns_of(self, record: Record) -> dict[str, FloatArray]:
         """Values of the columns that this bench knows; all inputs must be there, and one measured column at least."""

@@ -12,6 +12,9 @@ import hdrive_mbs as hm
 from hdrive_mbs.compiled.equilibrium import equilibria
 from hdrive_mbs.compiled.idle_coordinates import without_idle
 from hdrive_mbs.compiled.line import CompiledLine
+from hdrive_mbs.diagnosis.experiment.choose import next_records
+from hdrive_mbs.diagnosis.experiment.detectability import DISTINGUISHABLE
+from hdrive_mbs.diagnosis.experiment.plan import Plan
 from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.following import following
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
@@ -256,3 +259,44 @@ def test_an_effect_of_the_sensors_leaves_the_torsion_view_as_it_is() -> None:
     changed[1] += 0.1
     simulator.residuals(hypothesis, [start, changed])
     assert simulator.runs == 3  # lateral twice, torsion once
+
+
+def test_a_planned_record_is_what_the_bench_would_record() -> None:
+    """The reference of the run-up as a plan: the same columns as its record, which follows its own spin angle."""
+    duration = 0.5
+    plan = Plan(
+        name="again", inputs={rotor_bench.SPEED: rotor_bench.REFERENCES["run_up"]}, duration=duration, every=rotor_bench.SAMPLE_TIME
+    )
+    columns = compiled("run_up", duration)
+    hypothesis, origin = Hypothesis(factors=factors("youngs_modulus")), np.zeros(1)
+    shown = Simulator(bench().planned(plan), rotor_bench.STEP).columns(hypothesis, origin)
+    assert [set(part) for part in shown] == [set(rotor_bench.LATERAL), set(rotor_bench.TORSION)]
+    for column, values in {**shown[0], **shown[1]}.items():
+        noise = rotor_bench.noise()[column]
+        # at the smallest a fifth of the noise's rms, which the steps of both runs and the smoothed controller leave
+        assert np.sqrt(np.mean((values - columns[column]) ** 2)) < 0.2 * noise, column
+
+
+def test_plans_of_the_rotor_bench_tell_causes_apart() -> None:
+    plans = {plan.name: plan for plan in bench().menu()}
+    assert len(plans) == 4
+    assert all(plan.duration == rotor_bench.MENU_TIME for plan in plans.values())
+    [blows] = [plan for name, plan in plans.items() if "blows" in name]
+    short = dataclasses.replace(blows, duration=0.5)
+    seen = dataclasses.replace(bench().planned(short)[0], held_out=np.arange(short.samples) % 16 < 4)
+    simulator = Simulator([seen], rotor_bench.STEP, 4)
+    fits = {}
+    for where, change in (("bearing_1", 0.2), ("bearing_2", 0.2)):
+        added = Added(hm.SupportStiffnessChange(change=change), where, "softer")
+        hypothesis = Hypothesis(factors("youngs_modulus"), (added,))
+        fits["support_stiffness", where] = fit(simulator, hypothesis, hypothesis.start(), steps=0)
+    [found] = next_records(bench(), fits, [short], step=rotor_bench.STEP, every=4, alone=True)
+    assert found.detectability > DISTINGUISHABLE
+
+
+def test_a_plan_that_the_rotor_bench_cannot_run_says_why() -> None:
+    course = ((0.0, 1.0), (0.0, 50.0))
+    with pytest.raises(hm.ParameterError, match="no input 'load_torque'"):
+        bench().planned(Plan(name="a", inputs={"load_torque": course}, duration=1.0, every=rotor_bench.SAMPLE_TIME))
+    with pytest.raises(hm.ParameterError, match=r"samples every 0\.00025 s"):
+        bench().planned(Plan(name="a", inputs={rotor_bench.SPEED: course}, duration=1.0, every=1e-3))

@@ -34,7 +34,8 @@ def next_records(
     """How well each plan of a menu would tell the fitted causes apart, best first.
 
     fits : (effect, place) -> fitted, two at least
-    menu : plans; the standard ones if not given, within the limits, as long and as finely sampled as the longest record
+    menu : plans; if not given those of the bench, or the standard ones, within the limits, as long and as finely sampled as the
+        longest record
     records : seen so far;  limits : those that these have kept, if not given
     step : of the integration [s]; half a sample if not given;  every : compare only each such sample
     alone : whether a planned record speaks alone, and not together with the records of the fits
@@ -45,7 +46,8 @@ def next_records(
     labels = tuple(fits)
     if len(labels) < 2:
         raise ParameterError(f"{len(labels)} fitted cause given; to tell causes apart takes two.")
-    plans = tuple(menu) if menu is not None else _usual(bench, records, limits, step)
+    own = bench.menu() if menu is None else menu
+    plans = _usual(bench, records, limits, step) if own is None else tuple(own)
     if not plans:
         raise ParameterError("The menu is empty: give a plan, or None for the standard ones.")
     found: list[Separation] = []
