@@ -47,7 +47,7 @@ def processor() -> Processor:
     return Processor(llvm.get_host_cpu_name(), features.flatten(), lanes, bool(arm or features.get("fma")))
 
 
-@lru_cache(maxsize=400)  # of some 2 MB each
+@lru_cache(maxsize=400)  # of about 1 MB each
 def machine(structure: Structure, width: int = 1, *, shared: bool = True) -> Machine:
     """Compile, or take what has been compiled for the same structure in this process.
 
@@ -65,9 +65,12 @@ def machine(structure: Structure, width: int = 1, *, shared: bool = True) -> Mac
     builder.getModulePassManager().run(module, builder)
     engine = llvm.create_mcjit_compiler(module, target)
     engine.finalize_object()
+    entry = engine.get_function_address("run")
+    engine.remove_module(module)  # a third of what is kept, of no use once the code is there
+    module.close()
     pointer, real, whole = ctypes.c_void_p, ctypes.c_double, ctypes.c_int64
     kind = ctypes.CFUNCTYPE(None, pointer, real, whole, whole, whole, pointer, pointer, pointer, pointer, pointer, whole)
-    return Machine(kind(engine.get_function_address("run")), (engine, target, module))
+    return Machine(kind(entry), (engine, target))
 
 
 def _llvm() -> Any:
