@@ -45,7 +45,7 @@ SINGLES, LAST, LONG = 3, 4, 20
 """Labels that are fitted on all samples, and steps that this may take for them and for the best."""
 EXACT = 1e-6
 """Relative change of the cost that ends these last fits."""
-JOINED = 5
+JOINED = 3
 """Other single causes that the best one is joined with."""
 
 
@@ -107,7 +107,7 @@ def gather(
         together = (*pair.found, *both)
         if together:
             best = min(together, key=lambda item: item.fitted.cost)
-            other = swapped(team, coarse, best, first.suspect.label, single.labels[: SINGLES + 1])
+            other = swapped(team, coarse, best, first.suspect.label, single.labels[:SINGLES])
             double = (min((best, *other), key=lambda item: item.fitted.cost),)
             single = _with(single, alone(team, coarse, double[0], suspects(null.hypothesis, groups, tried)))
     serious = single.labels[:SINGLES]

@@ -28,13 +28,16 @@ LOOSE = 10.0
 """Times its prior standard deviation that a suspected parameter may be off."""
 COARSE, FINE = 3e-3, 1e-4
 """Relative change of the cost that ends the fit of the nominal model, whose misfit may have no explanation in it, and of others."""
-STEPS, ELSEWHERE, CONVERGED = 3, 8, 25
-"""Joint steps before the last choice, of the best law at other places, and steps that a fit to the end may take."""
+STEPS, TOGETHER, ELSEWHERE, CONVERGED = 3, 5, 8, 25
+"""Joint steps before the last choice, of two causes put together, of the best law at other places, and steps that a fit to
+the end may take."""
 HOPS, NEAR = 3, 3.0
 """Hops out of hollows for the nominal model, which everything else is held against, and the mean square up to which they help
 and up to which it is worth a fit as sharp as that of the causes: farther away they lead nowhere."""
 FAR = 1.3
 """Mean square of a fitted model above which everything is looked at with held parameters too (see ground.py)."""
+SECOND_LOOKS = 40
+"""Of the labels that looked best from there, which are looked at again then."""
 ENOUGH = 1.1
 """Mean square that ends the search; see ``enough``."""
 SMALL = 0.05
@@ -163,17 +166,18 @@ def search(
 
     One simple law stands for each label in the first look.  The best labels are looked at with all laws and starts,
     the best of those get a few joint steps with their own Jacobians, and the best of these are fitted to the end.
-    Where all of them leave something, the same is done with the parameters held near the values of the data sheet.
+    Where all of them leave something, the same is done with the likeliest, the parameters held near the values of the data sheet.
     What came out best is then tried at all other places where it may sit, from the values found.
     """
     how = depth or Depth()
     work = _Work(team, simulator, report or (lambda stage, done, total: None), how)
     everything = suspects(base.hypothesis, groups, tried)
-    found, looks = work.from_ground(base, base, everything)
-    if base.chi_fit > FAR and not any(item.fitted.chi_fit < enough(base, ENOUGH) for item in found):
-        more, others = work.from_ground(held(simulator, base), base, everything)
+    found, first = work.from_ground(base, base, everything)
+    looks = {f"{suspect.law} at {suspect.label[1]}": cost for suspect, cost in first}
+    if how.laws > 1 and base.chi_fit > FAR and not any(item.fitted.chi_fit < enough(base, ENOUGH) for item in found):
+        likely = {suspect.label for suspect, _ in first[:SECOND_LOOKS]}
+        more, _ = work.from_ground(held(simulator, base), base, [item for item in everything if item.label in likely])
         found = _cheapest([*found, *more])
-        looks = {name: min(cost, looks.get(name, cost)) for name, cost in (looks | others).items()}
     if how.laws > 1:
         moved = _elsewhere(found[0] if found else None, base, everything) + _restarts(found)
         found = _cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
@@ -200,8 +204,8 @@ class _Work:
     said: Report
     how: Depth
 
-    def from_ground(self, model: Fitted, base: Fitted, everything: Sequence[Suspect]) -> tuple[list[Found], dict[str, float]]:
-        """What is found from a model at some point, best first, and the cost of the first looks."""
+    def from_ground(self, model: Fitted, base: Fitted, everything: Sequence[Suspect]) -> tuple[list[Found], list[tuple[Suspect, float]]]:
+        """What is found from a model at some point, and the cost of the first looks, both best first."""
         screen = screen_from(self.simulator, model)
         simple = _simplest(everything)
         plain = Suspect(("none", ""), "none", (model.hypothesis,), (model.hypothesis,))
@@ -223,7 +227,7 @@ class _Work:
         ]
         further_ = [further(item.fitted, *((CONVERGED, FINE, 1) if end else (STEPS,))) for item, end in zip(kept, thorough, strict=True)]
         found = self.fitted([(item.suspect, task) for item, task in zip(kept, further_, strict=True)], "fitting the best")
-        return _cheapest(found), {f"{suspect.law} at {suspect.label[1]}": look.cost for suspect, look in first}
+        return _cheapest(found), [(suspect, look.cost) for suspect, look in first]
 
     def fitted(self, asked: Sequence[tuple[Suspect, Task]], words: str) -> list[Found]:
         """Suspects with their tasks done; those that cannot be run from where they begin are left out."""
@@ -336,7 +340,7 @@ def joined(team: Team, simulator: Simulator, first: Found, others: Sequence[Foun
         base = Hypothesis(own.factors, own.added, {**own.loose, **theirs.loose})
         hypothesis = Hypothesis(own.factors, (*own.added, *(_renamed(added, base) for added in theirs.added)), base.loose)
         start = hypothesis.start(first.fitted.hypothesis.nominal_part(first.fitted.z))
-        tasks.append(Task(hypothesis, start, None, ELSEWHERE, FINE))
+        tasks.append(Task(hypothesis, start, None, TOGETHER, FINE))
         suspects_of.append(item.suspect)
     return _those_that_ran(suspects_of, team.map(run_task, simulator, tasks))
 
@@ -359,7 +363,7 @@ def swapped(team: Team, simulator: Simulator, pair: Found, first: Label, others:
         own = item.fitted.hypothesis.rescaled(item.fitted.z)[0]
         base = Hypothesis(own.factors, own.added, {**own.loose, **second.loose})
         hypothesis = Hypothesis(own.factors, (*own.added, _renamed(second.added[-1], base)), base.loose)
-        tasks.append(Task(hypothesis, hypothesis.start(pair.fitted.hypothesis.nominal_part(pair.fitted.z)), None, ELSEWHERE, FINE))
+        tasks.append(Task(hypothesis, hypothesis.start(pair.fitted.hypothesis.nominal_part(pair.fitted.z)), None, TOGETHER, FINE))
         names.append(pair.suspect)
     return _those_that_ran(names, team.map(run_task, simulator, tasks))
 
