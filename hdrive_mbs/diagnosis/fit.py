@@ -8,7 +8,8 @@ trial, and parts of the undamped step.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -127,10 +128,7 @@ def fit(
     precisions = hypothesis.precisions
     mask = simulator.fit
 
-    def cost_of(values: FloatArray, at: FloatArray) -> float:
-        return simulator.blocks.cost(values[mask]) + hypothesis.prior_cost(at)
-
-    cost = cost_of(residuals, z)
+    cost = _cost(simulator, hypothesis, residuals, z)
     history = [cost]
     damping, converged, done = 1.0, len(z) == 0, 0  # nothing to search: it is there
     curvature = np.zeros((len(z), len(z)))
@@ -146,14 +144,7 @@ def fit(
             systems[power] = weighted.T @ columns, weighted.T @ residuals[mask] + precisions * z
         curvature = systems[1.0][0] if fresh else curvature
         points = _proposals(hypothesis, z, precisions, systems, damping)
-        found, costs = [], []
-        for some in (points[:1], points[1:]):
-            runs = simulator.residuals(hypothesis, [point for point, _ in some])
-            found += runs
-            costs += [np.inf if item is None else cost_of(item, point) for item, (point, _) in zip(runs, some, strict=True)]
-            kept_promise = (cost - costs[0]) / max(_promised(points[0][0] - z, *systems[1.0], precisions), TINY)
-            if kept_promise > AS_PROMISED:
-                break
+        found, costs, kept_promise = _tried(simulator, hypothesis, points, cost, _promised(points[0][0] - z, *systems[1.0], precisions))
         done += 1
         best = int(np.argmin(costs))
         chosen = found[best]
@@ -205,6 +196,28 @@ def secant(columns: FloatArray, change: FloatArray, move: FloatArray, scale: Flo
     """
     weighted = scale * move
     return np.asarray(columns + np.outer(change - columns @ move, weighted / max(float(move @ weighted), TINY)))
+
+
+def _cost(simulator: Simulator, hypothesis: Hypothesis, residuals: FloatArray | None, z: FloatArray) -> float:
+    """Misfit of the fitted samples and priors; infinite where a point could not be run."""
+    return math.inf if residuals is None else simulator.blocks.cost(residuals[simulator.fit]) + hypothesis.prior_cost(z)
+
+
+def _tried(
+    simulator: Simulator, hypothesis: Hypothesis, points: Sequence[tuple[FloatArray, float]], cost: float, promised: float
+) -> tuple[list[FloatArray | None], list[float], float]:
+    """Residuals and costs of proposals, and the share of its promise that the first one keeps; the others only if it is small."""
+    found: list[FloatArray | None] = []
+    costs: list[float] = []
+    kept = 0.0
+    for some in (points[:1], points[1:]):
+        runs = simulator.residuals(hypothesis, [point for point, _ in some])
+        found += runs
+        costs += [_cost(simulator, hypothesis, item, point) for item, (point, _) in zip(runs, some, strict=True)]
+        kept = (cost - costs[0]) / max(promised, TINY)
+        if kept > AS_PROMISED:
+            break
+    return found, costs, kept
 
 
 def _promised(move: FloatArray, curvature: FloatArray, slope: FloatArray, precisions: FloatArray) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.pairs import alone, joined, swapped
 from hdrive_mbs.diagnosis.search import (
     FINE,
     HOPS,
@@ -19,15 +20,12 @@ from hdrive_mbs.diagnosis.search import (
     Report,
     Search,
     Task,
-    alone,
     enough,
     fit_nominal,
-    joined,
     run_task,
     scored,
     search,
     suspects,
-    swapped,
 )
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.team import Team

@@ -141,11 +141,12 @@ class Hypothesis:
         """Nominal coordinates in standard deviations of the nominal prior."""
         return np.array([z[k] * self.loose.get(item.name, 1.0) for k, item in enumerate(self.factors)])
 
-    def values(self, z: FloatArray) -> dict[str, float]:
-        """Values by path."""
+    def values(self, z: FloatArray, *, to_run: bool = False) -> dict[str, float]:
+        """Values by path;  to_run : next to nothing in place of zeros."""
         found: dict[str, float] = {}
         for unknown, part in zip(self.unknowns, self.slices, strict=True):
-            found |= unknown.values(z[part].tolist())
+            own = z[part].tolist()
+            found |= unknown.run_values(own) if to_run else unknown.values(own)
         return found
 
     def clipped(self, z: FloatArray) -> FloatArray:
@@ -155,12 +156,14 @@ class Hypothesis:
             result[part] = unknown.clipped(z[part].tolist())
         return result
 
-    def scene(self, scene: Scene, z: FloatArray) -> Scene:
+    def scene(self, scene: Scene, z: FloatArray, *, to_run: bool = False) -> Scene:
         """The scene with these parameters and effects.
+
+        to_run : with next to nothing in place of zeros, so that other points have the same equations
 
         Raises ParameterError where values do not go together.
         """
-        values = self.values(z)
+        values = self.values(z, to_run=to_run)
         placed = []
         for item in self.added:
             prefix = f"{item.name}."

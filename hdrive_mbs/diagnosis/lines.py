@@ -174,7 +174,7 @@ def _compiled(network: Network, trial: Trial) -> CompiledLine:
 
 def _network(hypothesis: Hypothesis, scene: Scene, point: FloatArray) -> Network | None:
     try:
-        return hypothesis.scene(scene, point).network()
+        return hypothesis.scene(scene, point, to_run=True).network()
     except (ParameterError, LawError):
         return None
 

@@ -28,9 +28,8 @@ LOOSE = 10.0
 """Times its prior standard deviation that a suspected parameter may be off."""
 COARSE, FINE = 3e-3, 1e-4
 """Relative change of the cost that ends the fit of the nominal model, whose misfit may have no explanation in it, and of others."""
-STEPS, TOGETHER, ELSEWHERE, CONVERGED = 3, 5, 8, 25
-"""Joint steps before the last choice, of two causes put together, of the best law at other places, and steps that a fit to
-the end may take."""
+STEPS, ELSEWHERE, CONVERGED = 3, 8, 25
+"""Joint steps before the last choice, of the best law at other places, and steps that a fit to the end may take."""
 HOPS, NEAR = 3, 3.0
 """Hops out of hollows for the nominal model, which everything else is held against, and the mean square up to which they help
 and up to which it is worth a fit as sharp as that of the causes: farther away they lead nowhere."""
@@ -125,13 +124,14 @@ def suspects(base: Hypothesis, groups: Mapping[str, Sequence[str]], tried: Seque
             continue
 
         def with_(starts: Sequence[Added]) -> tuple[Hypothesis, ...]:
-            return tuple(Hypothesis(base.factors, (*base.added, _renamed(added, base)), base.loose) for added in starts)
+            return tuple(Hypothesis(base.factors, (*base.added, renamed(added, base)), base.loose) for added in starts)
 
         found.append(Suspect(item.label, item.kind.__name__, with_(item.first), with_(item.starts)))
     return found
 
 
-def _renamed(added: Added, base: Hypothesis) -> Added:
+def renamed(added: Added, base: Hypothesis) -> Added:
+    """An effect under a name that a base does not use yet."""
     taken = {item.name for item in base.added}
     name, number = added.name, 2
     while name in taken:
@@ -232,7 +232,7 @@ class _Work:
     def fitted(self, asked: Sequence[tuple[Suspect, Task]], words: str) -> list[Found]:
         """Suspects with their tasks done; those that cannot be run from where they begin are left out."""
         fits = self.team.map(run_task, self.simulator, [task for _, task in asked], partial(self.said, words))
-        return _those_that_ran([suspect for suspect, _ in asked], fits)
+        return those_that_ran([suspect for suspect, _ in asked], fits)
 
     def _looked(
         self, screen: Screen, asked: Sequence[Suspect], starts: Sequence[tuple[Hypothesis, ...]], words: str
@@ -243,7 +243,8 @@ class _Work:
         return sorted(looks, key=lambda pair: pair[1].cost)
 
 
-def _those_that_ran(suspects_: Sequence[Suspect], fits: Sequence[Fitted | None]) -> list[Found]:
+def those_that_ran(suspects_: Sequence[Suspect], fits: Sequence[Fitted | None]) -> list[Found]:
+    """Suspects with their fits, without those that could not be run."""
     return [Found(suspect, fitted) for suspect, fitted in zip(suspects_, fits, strict=True) if fitted is not None]
 
 
@@ -326,65 +327,6 @@ def run_task(simulator: Simulator, task: Task) -> Fitted | None:
 def further(fitted: Fitted, steps: int = CONVERGED, share: float = FINE, hops: int = 0) -> Task:
     """To fit on from where a fit stands."""
     return Task(fitted.hypothesis, fitted.z, fitted.residuals, steps, share, fitted if fitted.converged else None, hops)
-
-
-def joined(team: Team, simulator: Simulator, first: Found, others: Sequence[Found]) -> list[Found]:
-    """The best single cause together with each of the others, both from the values that they were found with alone."""
-    own, _ = first.fitted.hypothesis.rescaled(first.fitted.z)
-    tasks = []
-    suspects_of = []
-    for item in others:
-        theirs, _ = item.fitted.hypothesis.rescaled(item.fitted.z)
-        if item.suspect.label == first.suspect.label or not (own.added or own.loose):
-            continue
-        base = Hypothesis(own.factors, own.added, {**own.loose, **theirs.loose})
-        hypothesis = Hypothesis(own.factors, (*own.added, *(_renamed(added, base) for added in theirs.added)), base.loose)
-        start = hypothesis.start(first.fitted.hypothesis.nominal_part(first.fitted.z))
-        tasks.append(Task(hypothesis, start, None, TOGETHER, FINE))
-        suspects_of.append(item.suspect)
-    return _those_that_ran(suspects_of, team.map(run_task, simulator, tasks))
-
-
-def swapped(team: Team, simulator: Simulator, pair: Found, first: Label, others: Sequence[Found]) -> list[Found]:
-    """A pair with its first cause replaced by each of other single causes, the second as it was found.
-
-    The first cause was chosen while the second was missing, and may have had to stand for it.
-
-    first : label of the first cause;  others : single causes, fitted
-    """
-    second = pair.fitted.hypothesis.rescaled(pair.fitted.z)[0]
-    if len(second.added) < 2:
-        return []
-    tasks = []
-    names = []
-    for item in others:
-        if item.suspect.label in (first, pair.suspect.label) or not item.fitted.hypothesis.added:
-            continue
-        own = item.fitted.hypothesis.rescaled(item.fitted.z)[0]
-        base = Hypothesis(own.factors, own.added, {**own.loose, **second.loose})
-        hypothesis = Hypothesis(own.factors, (*own.added, _renamed(second.added[-1], base)), base.loose)
-        tasks.append(Task(hypothesis, hypothesis.start(pair.fitted.hypothesis.nominal_part(pair.fitted.z)), None, TOGETHER, FINE))
-        names.append(pair.suspect)
-    return _those_that_ran(names, team.map(run_task, simulator, tasks))
-
-
-def alone(team: Team, simulator: Simulator, pair: Found, everything: Sequence[Suspect]) -> list[Found]:
-    """The second cause of a pair without the first, from the values of the pair.
-
-    The first may have done no more than bring the parameters to where the second shows.
-    """
-    fitted = pair.fitted
-    full = fitted.hypothesis.rescaled(fitted.z)[0]
-    label = pair.suspect.label
-    tasks, whose = [], []
-    for suspect in everything:
-        if suspect.label == label and suspect.law == pair.suspect.law:
-            old = suspect.all[0]
-            added = full.added[-1:] if old.added else ()
-            hypothesis = Hypothesis(old.factors, tuple(Added(item.effect, item.at, old.added[-1].name) for item in added), old.loose)
-            tasks.append(Task(hypothesis, hypothesis.start(fitted.hypothesis.nominal_part(fitted.z)), None, CONVERGED, FINE))
-            whose.append(suspect)
-    return _those_that_ran(whose, team.map(run_task, simulator, tasks))
 
 
 def scored(found: Found, base: Fitted) -> Found:

@@ -22,6 +22,8 @@ STRAIGHT, FARTHEST = 0.4, 19.0
 """Of its nominal value: where a parameter stops being linear in its coordinate; and how far it may grow above it."""
 TOLERANCE = 5.0
 """Prior standard deviations that a parameter may be off unless it is suspected: what needs more is a cause of its own."""
+NEXT_TO_NOTHING = 1e-9
+"""Of its scale: what a run takes in place of zero."""
 SMALLEST = 1e-3
 """Of its scale: a strength below it is zero for the prior."""
 
@@ -40,6 +42,13 @@ class Unknown(ABC):
     @abstractmethod
     def values(self, z: Sequence[float]) -> dict[str, float]:
         """Values by path of the fields."""
+
+    def run_values(self, z: Sequence[float]) -> dict[str, float]:
+        """Values for a run: none exactly zero that need not be, because equations without a term are other equations.
+
+        Points that differ in numbers alone run side by side on the same machine code.
+        """
+        return self.values(z)
 
     @property
     def precision(self) -> float:
@@ -65,6 +74,10 @@ class Unknown(ABC):
     def reach(self, z: Sequence[float]) -> float:
         """Longest change of a coordinate in one step of a fit."""
         return 2.0
+
+
+def _apart_from_zero(z: Sequence[float]) -> tuple[float, ...]:
+    return tuple(value if value != 0.0 else NEXT_TO_NOTHING * (k + 1) for k, value in enumerate(z))
 
 
 def _normal(z: Sequence[float]) -> float:
@@ -127,6 +140,9 @@ class Strength(Unknown):
     def precision(self) -> float:
         return 0.0
 
+    def run_values(self, z: Sequence[float]) -> dict[str, float]:
+        return self.values(_apart_from_zero(z))
+
     def log_prior(self, z: Sequence[float]) -> float:
         return -math.log(max(z[0], SMALLEST) * math.log(self.high / self.low))
 
@@ -185,6 +201,9 @@ class Signed(Unknown):
     def values(self, z: Sequence[float]) -> dict[str, float]:
         return {self.path: min(max(0.5 * self.half_width * z[0], self.low), self.high)}
 
+    def run_values(self, z: Sequence[float]) -> dict[str, float]:
+        return self.values(_apart_from_zero(z))
+
     def log_prior(self, z: Sequence[float]) -> float:
         return _normal(z)
 
@@ -216,6 +235,9 @@ class Vector(Unknown):
 
     def values(self, z: Sequence[float]) -> dict[str, float]:
         return {self.path: self.scale * math.hypot(*z), self.phase_path: math.atan2(z[1], z[0])}
+
+    def run_values(self, z: Sequence[float]) -> dict[str, float]:
+        return self.values(_apart_from_zero(z))
 
     def log_prior(self, z: Sequence[float]) -> float:
         amplitude = max(math.hypot(*z), SMALLEST)

@@ -14,7 +14,9 @@ from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import fit, jacobian, secant
 from hdrive_mbs.diagnosis.ground import held
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
-from hdrive_mbs.diagnosis.search import ENOUGH, Found, Suspect, Task, alone, enough, run_task, suspects
+from hdrive_mbs.diagnosis.lines import Lines
+from hdrive_mbs.diagnosis.pairs import alone
+from hdrive_mbs.diagnosis.search import ENOUGH, Found, Suspect, Task, enough, run_task, suspects
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.verdict import judge
@@ -125,3 +127,22 @@ def test_an_effect_needs_odds_and_a_gap_that_it_closes(simulator: Simulator, dro
     assert max(claim.probabilities, key=lambda label: claim.probabilities[label]) == (
         ("none", "") if kind == "none" else found.suspect.label
     )
+
+
+def test_a_size_of_zero_runs_on_the_same_machine_code_as_any_other(simulator: Simulator) -> None:
+    added = Added(hm.KinematicError(amplitude=1e-5, order=2.0), "gear", "error")
+    hypothesis = Hypothesis(factors_of(BENCH), (added,))
+    nothing = hypothesis.start()
+    nothing[len(hypothesis.factors) :] = 0.0
+    along = nothing.copy()
+    along[len(hypothesis.factors)] = 1.0
+    [[one, other]] = Lines(simulator.trials).at(hypothesis, [nothing, along])
+    assert one is not None
+    assert other is not None
+    assert one.line.structure is other.line.structure
+    assert hypothesis.values(nothing)["error.amplitude"] == 0.0
+    [bare] = simulator.residuals(Hypothesis(factors_of(BENCH)), [nothing[: len(hypothesis.factors)]])
+    [zero] = simulator.residuals(hypothesis, [nothing])
+    assert bare is not None
+    assert zero is not None
+    np.testing.assert_allclose(zero, bare, rtol=0.0, atol=1e-6)

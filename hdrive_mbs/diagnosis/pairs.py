@@ -1,0 +1,72 @@
+"""Two causes at once: the best single one with others, exchanged for its rivals, and the second one without it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.search import CONVERGED, FINE, Found, Label, Suspect, Task, renamed, run_task, those_that_ran
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.team import Team
+
+TOGETHER = 5
+"""Joint steps of two causes that are put together."""
+
+
+def joined(team: Team, simulator: Simulator, first: Found, others: Sequence[Found]) -> list[Found]:
+    """The best single cause together with each of the others, both from the values that they were found with alone."""
+    own, _ = first.fitted.hypothesis.rescaled(first.fitted.z)
+    tasks = []
+    suspects_of = []
+    for item in others:
+        theirs, _ = item.fitted.hypothesis.rescaled(item.fitted.z)
+        if item.suspect.label == first.suspect.label or not (own.added or own.loose):
+            continue
+        base = Hypothesis(own.factors, own.added, {**own.loose, **theirs.loose})
+        hypothesis = Hypothesis(own.factors, (*own.added, *(renamed(added, base) for added in theirs.added)), base.loose)
+        start = hypothesis.start(first.fitted.hypothesis.nominal_part(first.fitted.z))
+        tasks.append(Task(hypothesis, start, None, TOGETHER, FINE))
+        suspects_of.append(item.suspect)
+    return those_that_ran(suspects_of, team.map(run_task, simulator, tasks))
+
+
+def swapped(team: Team, simulator: Simulator, pair: Found, first: Label, others: Sequence[Found]) -> list[Found]:
+    """A pair with its first cause replaced by each of other single causes, the second as it was found.
+
+    The first cause was chosen while the second was missing, and may have had to stand for it.
+
+    first : label of the first cause;  others : single causes, fitted
+    """
+    second = pair.fitted.hypothesis.rescaled(pair.fitted.z)[0]
+    if len(second.added) < 2:
+        return []
+    tasks = []
+    names = []
+    for item in others:
+        if item.suspect.label in (first, pair.suspect.label) or not item.fitted.hypothesis.added:
+            continue
+        own = item.fitted.hypothesis.rescaled(item.fitted.z)[0]
+        base = Hypothesis(own.factors, own.added, {**own.loose, **second.loose})
+        hypothesis = Hypothesis(own.factors, (*own.added, renamed(second.added[-1], base)), base.loose)
+        tasks.append(Task(hypothesis, hypothesis.start(pair.fitted.hypothesis.nominal_part(pair.fitted.z)), None, TOGETHER, FINE))
+        names.append(pair.suspect)
+    return those_that_ran(names, team.map(run_task, simulator, tasks))
+
+
+def alone(team: Team, simulator: Simulator, pair: Found, everything: Sequence[Suspect]) -> list[Found]:
+    """The second cause of a pair without the first, from the values of the pair.
+
+    The first may have done no more than bring the parameters to where the second shows.
+    """
+    fitted = pair.fitted
+    full = fitted.hypothesis.rescaled(fitted.z)[0]
+    label = pair.suspect.label
+    tasks, whose = [], []
+    for suspect in everything:
+        if suspect.label == label and suspect.law == pair.suspect.law:
+            old = suspect.all[0]
+            added = full.added[-1:] if old.added else ()
+            hypothesis = Hypothesis(old.factors, tuple(Added(item.effect, item.at, old.added[-1].name) for item in added), old.loose)
+            tasks.append(Task(hypothesis, hypothesis.start(fitted.hypothesis.nominal_part(fitted.z)), None, CONVERGED, FINE))
+            whose.append(suspect)
+    return those_that_ran(whose, team.map(run_task, simulator, tasks))
