@@ -43,6 +43,8 @@ SINGLES, LAST, LONG = 3, 4, 20
 """Labels that are fitted on all samples, and steps that this may take for them and for the best."""
 EXACT = 1e-6
 """Relative change of the cost that ends these last fits."""
+SECOND_LOOKS = 60
+"""Of the labels that looked best alone, at which a second cause is looked for."""
 JOINED = 3
 """Other single causes that the best one is joined with."""
 
@@ -98,7 +100,7 @@ def gather(
     pair = None
     if first is not None and first.log_odds > 0.0 and enough(null, LEFT) < first.fitted.chi_fit < null.chi_fit ** (1.0 - TAKEN):
         again = partial(_second, said)
-        pair = search(team, coarse, first.fitted, groups, tried, depth=SHALLOW, report=again)
+        pair = search(team, coarse, first.fitted, groups, tried, among=single.likely[:SECOND_LOOKS], depth=SHALLOW, report=again)
     double: tuple[Found, ...] = ()
     if pair is not None and first is not None:
         both = joined(team, coarse, first, single.labels[1 : JOINED + 1])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -94,12 +94,13 @@ class Search:
     """What a search found.
 
     base : the model without the suspects, refitted;  found : fitted laws, best first, several of one label
-    looks : cost of the first look at each law
+    looks : cost of the first look at each law;  likely : labels, the one that looked best first
     """
 
     base: Fitted
     found: tuple[Found, ...]
     looks: Mapping[str, float] = field(default_factory=dict)
+    likely: tuple[Label, ...] = ()
 
     @property
     def labels(self) -> tuple[Found, ...]:
@@ -159,6 +160,7 @@ def search(
     groups: Mapping[str, Sequence[str]],
     tried: Sequence[Candidate],
     *,
+    among: Collection[Label] | None = None,
     depth: Depth | None = None,
     report: Report | None = None,
 ) -> Search:
@@ -168,10 +170,12 @@ def search(
     the best of those get a few joint steps with their own Jacobians, and the best of these are fitted to the end.
     Where all of them leave something, the same is done with the likeliest, the parameters held near the values of the data sheet.
     What came out best is then tried at all other places where it may sit, from the values found.
+
+    among : labels that are looked at, all if not given
     """
     how = depth or Depth()
     work = _Work(team, simulator, report or (lambda stage, done, total: None), how)
-    everything = suspects(base.hypothesis, groups, tried)
+    everything = [item for item in suspects(base.hypothesis, groups, tried) if among is None or item.label in among]
     found, first = work.from_ground(base, base, everything)
     looks = {f"{suspect.law} at {suspect.label[1]}": cost for suspect, cost in first}
     if how.laws > 1 and base.chi_fit > FAR and not any(item.fitted.chi_fit < enough(base, ENOUGH) for item in found):
@@ -184,7 +188,8 @@ def search(
         if found and not found[0].fitted.converged:
             found[:1] = work.fitted([(found[0].suspect, further(found[0].fitted))], "fitting the best")
     final = sorted((scored(item, base) for item in found), key=lambda item: -item.log_odds)
-    return Search(base=base, found=tuple(final), looks=dict(sorted(looks.items(), key=lambda item: item[1])))
+    likely_first = tuple(dict.fromkeys(suspect.label for suspect, _ in first))
+    return Search(base=base, found=tuple(final), looks=looks, likely=likely_first)
 
 
 def enough(base: Fitted, least: float) -> float:
@@ -335,13 +340,18 @@ def scored(found: Found, base: Fitted) -> Found:
 
 
 def _simplest(everything: Sequence[Suspect]) -> list[Suspect]:
-    """The law with the fewest unknowns of each label."""
+    """The law of each label that leads its family, or else has the fewest unknowns."""
     best: dict[Label, Suspect] = {}
     for suspect in everything:
         known = best.get(suspect.label)
-        if known is None or suspect.all[0].size < known.all[0].size:
+        if known is None or _before(suspect) < _before(known):
             best[suspect.label] = suspect
     return list(best.values())
+
+
+def _before(suspect: Suspect) -> tuple[bool, int]:
+    hypothesis = suspect.all[0]
+    return not (suspect.law != PARAMETER and type(hypothesis.added[-1].effect).leads), hypothesis.size
 
 
 def _picked(looks: Sequence[tuple[Suspect, Look]], *, laws: int) -> list[tuple[Suspect, Look]]:

@@ -65,6 +65,8 @@ class Effect(Described, ABC):
     phase where the amplitude is zero."""
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {}
     """Field -> values from which a search begins, one after the other.  A field without a typical range stays there."""
+    leads: ClassVar[bool] = False
+    """Whether it stands for its family in a first look, in place of the law with the fewest numbers to search."""
     decisive: ClassVar[tuple[str, ...]] = ()
     """Those of them of which already a first look takes every value: away from the right one the effect does not show."""
 

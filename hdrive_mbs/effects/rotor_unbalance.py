@@ -33,6 +33,7 @@ class RotorUnbalance(Effect):
 
     acts_on: ClassVar[str] = "rotor"
     family: ClassVar[str] = "unbalance"
+    leads: ClassVar[bool] = True
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("unbalance", "phase"),)
     signature: ClassVar[str] = "vibration once per turn that grows with the square of speed and turns its phase at critical speeds"
 
