@@ -68,10 +68,12 @@ def listed(items: Sequence[str], last: str = "and") -> str:
 
 
 def percent(share: float) -> str:
-    """``99.7 %``: never rounded up to 100."""
+    """``99.7 %``: never rounded up to 100, nor down to 0."""
     if math.isnan(share):
         return "-"
     value = 100.0 * share
+    if 0.0 < value < 1.0:
+        return "under 1 %"
     if 99.99 <= value < 100.0:
         return "over 99.99 %"
     places = 0 if value < 99.0 else 1 if value < 99.9 else 2

@@ -212,7 +212,7 @@ class _Work:
     def from_ground(self, model: Fitted, base: Fitted, everything: Sequence[Suspect]) -> tuple[list[Found], list[tuple[Suspect, float]]]:
         """What is found from a model at some point, and the cost of the first looks, both best first."""
         screen = screen_from(self.simulator, model)
-        simple = _simplest(everything)
+        simple = simplest(everything)
         plain = Suspect(("none", ""), "none", (model.hypothesis,), (model.hypothesis,))
         first = self._looked(screen, [plain, *simple], [item.first for item in (plain, *simple)], "looking at candidates")
         before = min([model.cost, *(look.cost for suspect, look in first if suspect is plain)])
@@ -339,7 +339,7 @@ def scored(found: Found, base: Fitted) -> Found:
     return Found(found.suspect, found.fitted, log_evidence(found.fitted) - log_evidence(base))
 
 
-def _simplest(everything: Sequence[Suspect]) -> list[Suspect]:
+def simplest(everything: Sequence[Suspect]) -> list[Suspect]:
     """The law of each label that leads its family, or else has the fewest unknowns."""
     best: dict[Label, Suspect] = {}
     for suspect in everything:

@@ -191,7 +191,7 @@ def _bearings(results: DemoResults) -> Iterator[str]:
         )
         for name, run in results.runs.items()
     )
-    heads = ("bearings", "coordinates", "peak [µm]", "against full", "at [rad/s]", "undamped critical speeds [rad/s]", "run time [s]")
+    heads = ("bearings", "coordinates", "peak [µm]", "against full", "at [rad/s]", "critical speeds [rad/s]", "run [s]")
     yield from table_of(Table(heads=heads, rows=rows), f"Whirl of the {_plain(results.rotor)} in the run-up, 0-peak")
     peaks = ", ".join(f"{name} {row[2]} µm at {row[4]} rad/s" for name, row in zip(results.runs, rows, strict=True))
     text = f"Whirl of the {_plain(results.rotor)} over its speed near the critical speeds, one curve a model: {peaks}."

@@ -137,6 +137,8 @@ def test_neither_shares_nor_probabilities_are_rounded_to_certainty() -> None:
     assert readable.percent(0.99999) == "over 99.99 %"
     assert readable.percent(0.9996) == "99.96 %"
     assert readable.percent(1.0) == "100 %"
+    assert readable.percent(0.004) == "under 1 %"
+    assert readable.percent(0.0) == "0 %"
     assert readable.probability(0.9999) == "> 0.99"
     assert readable.probability(1.0) == "> 0.99"
     assert readable.probability(1e-6) == "< 0.01"

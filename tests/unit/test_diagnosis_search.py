@@ -16,7 +16,7 @@ from hdrive_mbs.diagnosis.ground import held
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
 from hdrive_mbs.diagnosis.pairs import alone
-from hdrive_mbs.diagnosis.search import ENOUGH, Found, Suspect, Task, enough, run_task, suspects
+from hdrive_mbs.diagnosis.search import ENOUGH, Found, Suspect, Task, enough, run_task, simplest, suspects
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.verdict import judge
@@ -146,3 +146,8 @@ def test_a_size_of_zero_runs_on_the_same_machine_code_as_any_other(simulator: Si
     assert bare is not None
     assert zero is not None
     np.testing.assert_allclose(zero, bare, rtol=0.0, atol=1e-6)
+
+
+def test_a_family_is_led_by_the_law_that_says_so() -> None:
+    everything = suspects(Hypothesis(()), {}, candidates(rotor_bench.bench().scene, [hm.DynamicUnbalance, hm.RotorUnbalance, hm.ShaftBow]))
+    assert {suspect.law for suspect in simplest(everything)} == {"RotorUnbalance", "ShaftBow"}
