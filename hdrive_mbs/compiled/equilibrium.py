@@ -43,7 +43,7 @@ def equilibria(lines: Sequence[CompiledLine], *, start: float = 0.0, angles: Val
     width = processor().lanes
     for group in groups.values():
         for part in (group[first : first + width] for first in range(0, len(group), width)):
-            some = _Settling([lines[k] for k in part], width if len(part) > 1 else 1, start, angles)
+            some = _Settling([lines[k] for k in part], width, start, angles)
             found |= dict(zip(part, some.places(), strict=True))
     return [found[k] for k in range(len(lines))]
 

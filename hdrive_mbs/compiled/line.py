@@ -126,9 +126,9 @@ def run_many(
     for group in groups.values():
         lanes = processor().lanes
         for part in (group[first : first + lanes] for first in range(0, len(group), lanes)):
-            width = 1 if len(part) == 1 else lanes
+            # one line alone takes as long in all lanes as in one, and needs no machine code of its own
             out, good = run_lanes(
-                [lines[k].program for k in part], width, np.array([initial[k] for k in part]), samples, every, inner, start
+                [lines[k].program for k in part], lanes, np.array([initial[k] for k in part]), samples, every, inner, start
             )
             for lane, k in enumerate(part):
                 if good[lane] < samples:

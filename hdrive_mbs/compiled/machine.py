@@ -18,7 +18,8 @@ class Processor:
     """What the machine code is written for.
 
     name, features : as LLVM calls them
-    lanes : doubles in a vector register
+    lanes : doubles that are computed side by side; 4 also where a register takes 8, for processors of 2022 (AMD) compute
+        these in two halves, and most groups are small
     fused : whether it has fused multiply-add
     """
 
@@ -43,7 +44,7 @@ def processor() -> Processor:
     llvm = _llvm()
     features = llvm.get_host_cpu_features()
     arm = llvm.get_default_triple().startswith(("aarch64", "arm64"))
-    lanes = 8 if features.get("avx512f") else 4 if features.get("avx2") else 2
+    lanes = 4 if features.get("avx2") else 2
     return Processor(llvm.get_host_cpu_name(), features.flatten(), lanes, bool(arm or features.get("fma")))
 
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One operation: its arguments are numbers of earlier steps."""
+class Step(NamedTuple):
+    """One operation: its arguments are numbers of earlier steps.  (Made and hashed by the ten thousand: a tuple.)"""
 
     operation: str
     arguments: tuple[int, ...]
