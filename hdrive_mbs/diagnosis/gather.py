@@ -35,8 +35,8 @@ from hdrive_mbs.errors import AnalysisError
 LEFT = 1.2
 """Mean square left by the best single cause above which a second one is looked for; more beside a strong one (``enough``)."""
 TAKEN = 0.05
-"""Share of the logarithm of the misfit that the best single cause has to take away before a second one is looked for: beside one
-that explains next to nothing a second would be another first."""
+"""Share of the nominal model's cost that the best single cause has to take away before a second one is looked for: beside one that
+explains next to nothing a second would be another first."""
 SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 """Of the search for a second cause."""
 SINGLES, LAST, LONG = 3, 4, 20
@@ -98,7 +98,7 @@ def gather(
     single = search(team, coarse, null, groups, tried, report=said)
     first = single.found[0] if single.found else None
     pair = None
-    if first is not None and first.log_odds > 0.0 and enough(null, LEFT) < first.fitted.chi_fit < null.chi_fit ** (1.0 - TAKEN):
+    if first is not None and first.log_odds > TAKEN * null.cost and first.fitted.chi_fit > enough(null, LEFT):
         again = partial(_second, said)
         pair = search(team, coarse, first.fitted, groups, tried, among=single.likely[:SECOND_LOOKS], depth=SHALLOW, report=again)
     double: tuple[Found, ...] = ()
