@@ -48,7 +48,7 @@ def processor() -> Processor:
     return Processor(llvm.get_host_cpu_name(), features.flatten(), lanes, bool(arm or features.get("fma")))
 
 
-@lru_cache(maxsize=400)  # of about 1 MB each
+@lru_cache(maxsize=320)  # of about 1 MB each
 def machine(structure: Structure, width: int = 1, *, shared: bool = True) -> Machine:
     """Compile, or take what has been compiled for the same structure in this process.
 

@@ -15,7 +15,7 @@ from hdrive_mbs.expression import Expression, Pieces, evaluate, in_order
 
 FloatArray = npt.NDArray[np.float64]
 
-KEPT_BYTES = 256_000_000
+KEPT_BYTES = 96_000_000
 """Memory for columns that are kept for later runs."""
 
 _kept: OrderedDict[Hashable, FloatArray] = OrderedDict()
