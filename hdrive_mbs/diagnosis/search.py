@@ -39,7 +39,7 @@ SECOND_LOOKS = 40
 """Of the labels that looked best from there, which are looked at again then."""
 ENOUGH = 1.1
 """Mean square that ends the search; see ``enough``."""
-SMALL = 0.05
+SMALL = 0.03
 """Of the logarithm of the nominal model's mean square: left by a law that is nearly right beside a cause that is strong."""
 HOPELESS = 10.0
 """Times the mean square of a law that is near, above which others are not fitted to the end."""
@@ -291,7 +291,7 @@ def _elsewhere(best: Found | None, base: Fitted, everything: Sequence[Suspect]) 
         hypothesis = Hypothesis(old.factors, added, old.loose)
         z = hypothesis.start(fitted.hypothesis.nominal_part(fitted.z))
         z[base.hypothesis.nominal_size : base.hypothesis.size] = base.z[base.hypothesis.nominal_size :]
-        tasks.append((suspect, Task(hypothesis, z, None, STEPS if fitted.chi_fit < NEAR else ELSEWHERE, FINE)))
+        tasks.append((suspect, Task(hypothesis, z, None, ELSEWHERE, FINE)))
     return tasks
 
 
