@@ -35,6 +35,8 @@ HOPS, NEAR = 3, 3.0
 and up to which it is worth a fit as sharp as that of the causes: farther away they lead nowhere."""
 FAR = 1.3
 """Mean square of a fitted model above which everything is looked at with held parameters too (see ground.py)."""
+PLACES = 2
+"""Of one family that are looked at closer; what comes out best is tried at the others in the end."""
 SECOND_LOOKS = 40
 """Of the labels that looked best from there, which are looked at again then."""
 ENOUGH = 1.1
@@ -217,7 +219,8 @@ class _Work:
         first = self._looked(screen, [plain, *simple], [item.first for item in (plain, *simple)], "looking at candidates")
         before = min([model.cost, *(look.cost for suspect, look in first if suspect is plain)])
         first = [pair for pair in first if pair[0] is not plain]
-        chosen = [suspect.label for suspect, _ in first[: _worth(before, [look.cost for _, look in first], self.how.brief)]]
+        spread = _spread(first)
+        chosen = [suspect.label for suspect, _ in spread[: _worth(before, [look.cost for _, look in spread], self.how.brief)]]
         closer = [pair for pair in first if pair[0].label in chosen]
         if self.how.laws > 1:
             laws = [suspect for suspect in everything if suspect.label in chosen]
@@ -352,6 +355,21 @@ def simplest(everything: Sequence[Suspect]) -> list[Suspect]:
 def _before(suspect: Suspect) -> tuple[bool, int]:
     hypothesis = suspect.all[0]
     return not (suspect.law != PARAMETER and type(hypothesis.added[-1].effect).leads), hypothesis.size
+
+
+def _spread(looks: Sequence[tuple[Suspect, Look]]) -> list[tuple[Suspect, Look]]:
+    """The best looks without more than PLACES of one family: on a stiff shaft a torque looks the same everywhere.
+
+    Parameters all count as families of their own.
+    """
+    seen: dict[str, int] = {}
+    chosen = []
+    for suspect, look in looks:
+        family = suspect.label[1] if suspect.law == PARAMETER else suspect.label[0]
+        seen[family] = seen.get(family, 0) + 1
+        if seen[family] <= PLACES:
+            chosen.append((suspect, look))
+    return chosen
 
 
 def _picked(looks: Sequence[tuple[Suspect, Look]], *, laws: int) -> list[tuple[Suspect, Look]]:
