@@ -8,6 +8,7 @@ line          a trial's network linearised, with its places
 spectra       residuals and their slopes as short-time spectra
 response      what a force at each place does to the columns
 likelihood    how likely the residuals are with a force at one place
+about         a model linearised, with the likelihood of forces at all places
 locate        all places compared
 latent_force  the course of the force
 """

@@ -12,17 +12,15 @@ import numpy.typing as npt
 from scipy.special import log_ndtr
 
 from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.locate.about import About, linearised
 from hdrive_mbs.diagnosis.locate.latent_force import LatentForce, by_direction, latent_force, most_probable
-from hdrive_mbs.diagnosis.locate.likelihood import Directions, Explained, Likelihood, directions
-from hdrive_mbs.diagnosis.locate.line import Line, line
-from hdrive_mbs.diagnosis.locate.motion import KnownForce, Motion, motion_of
-from hdrive_mbs.diagnosis.locate.response import Response, response
-from hdrive_mbs.diagnosis.locate.sources import TURNING
-from hdrive_mbs.diagnosis.locate.spectra import Spectra, joined, spectra
+from hdrive_mbs.diagnosis.locate.likelihood import Explained, Likelihood, directions
+from hdrive_mbs.diagnosis.locate.motion import KnownForce
+from hdrive_mbs.diagnosis.locate.spectra import joined
 from hdrive_mbs.diagnosis.result import Place
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.unknowns import Factor
-from hdrive_mbs.errors import AnalysisError, LawError, ParameterError, SimulationError, unknown_place
+from hdrive_mbs.errors import AnalysisError, unknown_place
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -52,38 +50,6 @@ UNCLEAR = 3.0
 
 
 @dataclass(frozen=True, eq=False)
-class _About:
-    """What the model was linearised about, and the residuals there."""
-
-    motions: Sequence[Motion]
-    lines: Sequence[Line]
-    spectra: Sequence[Spectra]
-    likelihood: Likelihood
-
-    @cached_property
-    def responses(self) -> tuple[Response, ...]:
-        """Of all places, by trial."""
-        return tuple(response(*item) for item in zip(self.motions, self.lines, self.spectra, strict=True))
-
-    def transfer(self, name: str, k: int) -> ComplexArray | None:
-        """Of a source in trial k: where the spin alone is watched, that of a torque at its place; None where it does not show."""
-        return self.responses[k].of.get(self.shown(name, k))
-
-    def shown(self, name: str, k: int) -> str:
-        """The source that shows a place in trial k."""
-        return name if name in self.responses[k].of else f"{self.at(name)}, {TURNING}"
-
-    def place(self, name: str) -> list[Directions | None]:
-        """Directions of a source in each trial."""
-        found = [self.transfer(name, k) for k in range(len(self.responses))]
-        return [None if item is None else directions(item) for item in found]
-
-    def at(self, name: str) -> str:
-        """The place of a source."""
-        return next(item.sources[name].at for item in self.responses if name in item.sources)
-
-
-@dataclass(frozen=True, eq=False)
 class _Tried:
     """A source at a place with what its force explains.
 
@@ -92,7 +58,7 @@ class _Tried:
 
     name: str
     at: str
-    about: _About
+    about: About
     found: Explained
     gain: float
     loose: bool = False
@@ -106,35 +72,15 @@ class Localiser:
 
     def __init__(self, simulator: Simulator, null: Fitted) -> None:
         self._simulator, self._hypothesis = simulator, null.hypothesis
-        about = self._linearised(null.z, [()] * len(simulator.trials))
+        about = linearised(simulator, null.hypothesis, null.z)
         if about is None:
             raise AnalysisError("The fitted model cannot be run through the records at the full sample rate; use a shorter step.")
         self._about = about
         self._nowhere = about.likelihood.of(None, np.zeros(len(about.likelihood.at)), rounds=3)
         self._first = about, self._nowhere
-        if any(motion.network.is_lateral for motion in about.motions):
+        if about.turning:
             self._settle(null.z)
         self._tried = self._all()
-
-    def _linearised(
-        self, z: FloatArray, forces: Sequence[Sequence[KnownForce]], like: _About | None = None, at: str | None = None
-    ) -> _About | None:
-        """About the motion at these parameters with these forces; None where it cannot be run.
-
-        like : has the slopes of the parameters and observers already;  at : for the sources of this place alone
-        """
-        try:
-            motions = [motion_of(self._simulator, k, self._hypothesis, z, forces[k]) for k in range(len(self._simulator.trials))]
-        except (SimulationError, ParameterError, LawError):
-            return None
-        watching = [item.observer for item in like.lines] if like else [None] * len(motions)
-        lines = [line(motion, at, item) for motion, item in zip(motions, watching, strict=True)]
-        slopes = [item.slopes for item in like.spectra] if like else None
-        made = spectra(self._simulator, self._hypothesis, z, motions, lines, forces, slopes)
-        offsets = made[0].values.shape[-1] - 1 - len(z)
-        point = np.concatenate([z, np.zeros(offsets)])
-        likelihood = Likelihood(made, point, np.concatenate([self._hypothesis.precisions, np.ones(offsets)]))
-        return _About(motions, lines, made, likelihood)
 
     def _settle(self, z: FloatArray) -> None:
         """Linearised anew where the parameters go without a force, as long as they go far.
@@ -146,7 +92,7 @@ class Localiser:
             if np.max(np.abs(moved), initial=0.0) < FAR:
                 return
             z = self._hypothesis.clipped(z + np.clip(moved, -LONGEST, LONGEST))
-            about = self._linearised(z, [()] * len(self._simulator.trials))
+            about = linearised(self._simulator, self._hypothesis, z)
             if about is None:
                 return
             found = about.likelihood.of(None, np.zeros(len(about.likelihood.at)), rounds=3)
@@ -162,7 +108,7 @@ class Localiser:
     def _all(self) -> list[_Tried]:
         loose = self._loosened()
         tried = self._tried_about(self._about, self._nowhere)
-        if any(motion.network.is_lateral for motion in self._about.motions):
+        if self._about.turning:
             # without a force parameters may have gone where they stand in for it: begin also where they were
             about, _ = self._first
             tried += self._tried_about(about, about.likelihood.of(None, np.zeros(len(about.likelihood.at)), rounds=0))
@@ -171,18 +117,18 @@ class Localiser:
         tried = [replace(item, gain=loose[item.at], loose=True) if loose.get(item.at, -math.inf) > item.gain else item for item in tried]
         return sorted(tried, key=lambda item: -item.gain)
 
-    def _tried_about(self, about: _About, nowhere: Explained) -> list[_Tried]:
+    def _tried_about(self, about: About, nowhere: Explained) -> list[_Tried]:
         """All places about one motion, the best of them with parameters of their own that begin at those of nowhere."""
         tried = _one_a_place([self._quick(about, nowhere, name) for name in self.names])
         for k, item in enumerate(tried[:SERIOUS]):
             tried[k] = self._try(about, item.name, nowhere.z, rounds=2)
         return sorted(tried, key=lambda item: -item.gain)
 
-    def _try(self, about: _About, name: str, z: FloatArray, rounds: int) -> _Tried:
+    def _try(self, about: About, name: str, z: FloatArray, rounds: int) -> _Tried:
         found = about.likelihood.of(about.place(name), z, rounds)
         return _Tried(name, about.at(name), about, found, found.log_likelihood - self._nowhere.log_likelihood)
 
-    def _quick(self, about: _About, nowhere: Explained, name: str) -> _Tried:
+    def _quick(self, about: About, nowhere: Explained, name: str) -> _Tried:
         found = about.likelihood.quickly(about.place(name), nowhere.z, nowhere)
         return _Tried(name, about.at(name), about, found, found.log_likelihood - self._nowhere.log_likelihood)
 
@@ -218,7 +164,7 @@ class Localiser:
         made = [best.get(k, replace(item, gain=item.gain * lost) if item.gain > 0.0 else item) for k, item in enumerate(tried)]
         return sorted(made, key=lambda item: -item.gain)
 
-    def _about_force(self, item: _Tried) -> _About | None:
+    def _about_force(self, item: _Tried) -> About | None:
         """With the force of a place put into the model, and its parameters; None where that cannot be run.
 
         What the force does, H F, is added to the residuals of that run, so that they miss it like those before.
@@ -240,8 +186,9 @@ class Localiser:
                     forces.append(KnownForce(f"force {way}", factors, times, joined(own[..., way], old.window, len(times))))
             spectra_of.append(force)
             known.append(forces)
-        turning = any(motion.network.is_lateral for motion in about.motions)
-        there = self._linearised(about.likelihood.at[:size] + moved[:size], known, about if turning else None, item.at if turning else None)
+        z = about.likelihood.at[:size] + moved[:size]
+        like, at = (about, item.at) if about.turning else (None, None)
+        there = linearised(self._simulator, self._hypothesis, z, known, like=like, at=at)
         if there is None:
             return None
         for k, force in enumerate(spectra_of):
@@ -312,7 +259,7 @@ class Localiser:
         a steady torque, shows in so few bins that no force pays.  Asked of rotors alone, whose places lie close together.
         """
         before, left = self._nowhere.left / self._about.likelihood.numbers, self.left
-        if left < QUIET or not any(motion.network.is_lateral for motion in self._about.motions):
+        if left < QUIET or not self._about.turning:
             return ""
         if self._odds[NOWHERE] > 0.0:
             return (

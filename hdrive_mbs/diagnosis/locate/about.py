@@ -1,0 +1,89 @@
+"""A model linearised about a motion, for forces at all places."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.locate.likelihood import Directions, Likelihood, directions
+from hdrive_mbs.diagnosis.locate.line import Line, line
+from hdrive_mbs.diagnosis.locate.motion import KnownForce, Motion, motion_of
+from hdrive_mbs.diagnosis.locate.response import Response, response
+from hdrive_mbs.diagnosis.locate.sources import TURNING
+from hdrive_mbs.diagnosis.locate.spectra import Spectra, spectra
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.errors import LawError, ParameterError, SimulationError
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class About:
+    """What the model was linearised about, and the residuals there."""
+
+    motions: Sequence[Motion]
+    lines: Sequence[Line]
+    spectra: Sequence[Spectra]
+    likelihood: Likelihood
+
+    @property
+    def turning(self) -> bool:
+        """Whether it is a line with lateral motion."""
+        return any(motion.network.is_lateral for motion in self.motions)
+
+    @cached_property
+    def responses(self) -> tuple[Response, ...]:
+        """Of all places, by trial."""
+        return tuple(response(*item) for item in zip(self.motions, self.lines, self.spectra, strict=True))
+
+    def transfer(self, name: str, k: int) -> ComplexArray | None:
+        """Of a source in trial k: where the spin alone is watched, that of a torque at its place; None where it does not show."""
+        return self.responses[k].of.get(self.shown(name, k))
+
+    def shown(self, name: str, k: int) -> str:
+        """The source that shows a place in trial k."""
+        return name if name in self.responses[k].of else f"{self.at(name)}, {TURNING}"
+
+    def place(self, name: str) -> list[Directions | None]:
+        """Directions of a source in each trial."""
+        found = [self.transfer(name, k) for k in range(len(self.responses))]
+        return [None if item is None else directions(item) for item in found]
+
+    def at(self, name: str) -> str:
+        """The place of a source."""
+        return next(item.sources[name].at for item in self.responses if name in item.sources)
+
+
+def linearised(
+    simulator: Simulator,
+    hypothesis: Hypothesis,
+    z: FloatArray,
+    forces: Sequence[Sequence[KnownForce]] | None = None,
+    *,
+    like: About | None = None,
+    at: str | None = None,
+) -> About | None:
+    """About the motion at these parameters with these forces; None where it cannot be run.
+
+    forces : of each trial, none if not given
+    like : has the slopes of the parameters and observers already;  at : for the sources of this place alone
+    """
+    acting = forces if forces is not None else [()] * len(simulator.trials)
+    try:
+        motions = [motion_of(simulator, k, hypothesis, z, acting[k]) for k in range(len(simulator.trials))]
+    except (SimulationError, ParameterError, LawError):
+        return None
+    watching = [item.observer for item in like.lines] if like else [None] * len(motions)
+    lines = [line(motion, at, item) for motion, item in zip(motions, watching, strict=True)]
+    slopes = [item.slopes for item in like.spectra] if like else None
+    made = spectra(simulator, hypothesis, z, motions, lines, acting, slopes)
+    offsets = made[0].values.shape[-1] - 1 - len(z)
+    point = np.concatenate([z, np.zeros(offsets)])
+    likelihood = Likelihood(made, point, np.concatenate([hypothesis.precisions, np.ones(offsets)]))
+    return About(motions, lines, made, likelihood)
