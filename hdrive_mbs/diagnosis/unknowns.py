@@ -76,8 +76,12 @@ class Unknown(ABC):
         return 2.0
 
 
-def _apart_from_zero(z: Sequence[float]) -> tuple[float, ...]:
-    return tuple(value if value != 0.0 else NEXT_TO_NOTHING * (k + 1) for k, value in enumerate(z))
+@dataclass(frozen=True)
+class Size(Unknown):
+    """Something of an effect that may be zero."""
+
+    def run_values(self, z: Sequence[float]) -> dict[str, float]:
+        return self.values([value if value != 0.0 else NEXT_TO_NOTHING * (k + 1) for k, value in enumerate(z)])
 
 
 def _normal(z: Sequence[float]) -> float:
@@ -125,7 +129,7 @@ class Factor(Unknown):
 
 
 @dataclass(frozen=True)
-class Strength(Unknown):
+class Strength(Size):
     """A size that is zero without the effect."""
 
     low: float
@@ -139,9 +143,6 @@ class Strength(Unknown):
     @property
     def precision(self) -> float:
         return 0.0
-
-    def run_values(self, z: Sequence[float]) -> dict[str, float]:
-        return self.values(_apart_from_zero(z))
 
     def log_prior(self, z: Sequence[float]) -> float:
         return -math.log(max(z[0], SMALLEST) * math.log(self.high / self.low))
@@ -191,7 +192,7 @@ class Shape(Unknown):
 
 
 @dataclass(frozen=True)
-class Signed(Unknown):
+class Signed(Size):
     """A field of either sign."""
 
     half_width: float
@@ -200,9 +201,6 @@ class Signed(Unknown):
 
     def values(self, z: Sequence[float]) -> dict[str, float]:
         return {self.path: min(max(0.5 * self.half_width * z[0], self.low), self.high)}
-
-    def run_values(self, z: Sequence[float]) -> dict[str, float]:
-        return self.values(_apart_from_zero(z))
 
     def log_prior(self, z: Sequence[float]) -> float:
         return _normal(z)
@@ -217,7 +215,7 @@ class Signed(Unknown):
 
 
 @dataclass(frozen=True)
-class Vector(Unknown):
+class Vector(Size):
     """Amplitude (``path``) and phase."""
 
     phase_path: str
@@ -235,9 +233,6 @@ class Vector(Unknown):
 
     def values(self, z: Sequence[float]) -> dict[str, float]:
         return {self.path: self.scale * math.hypot(*z), self.phase_path: math.atan2(z[1], z[0])}
-
-    def run_values(self, z: Sequence[float]) -> dict[str, float]:
-        return self.values(_apart_from_zero(z))
 
     def log_prior(self, z: Sequence[float]) -> float:
         amplitude = max(math.hypot(*z), SMALLEST)
