@@ -35,8 +35,8 @@ from hdrive_mbs.errors import AnalysisError
 LEFT = 1.2
 """Mean square left by the best single cause above which a second one is looked for; more beside a strong one (``enough``)."""
 TAKEN = 0.05
-"""Share of the nominal model's cost that the best single cause has to take away before a second one is looked for: beside one that
-explains next to nothing a second would be another first."""
+"""Share of the nominal model's cost above that of noise that the best single cause has to take away before a second one is looked
+for: beside one that explains next to nothing a second would be another first."""
 SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 """Of the search for a second cause."""
 SINGLES, LAST, LONG = 3, 4, 20
@@ -71,6 +71,14 @@ def _second(said: Report, stage: str, done: int, total: int) -> None:
     said(f"second cause: {stage}", done, total)
 
 
+def wants_second(null: Fitted, first: Found, samples: int) -> bool:
+    """Whether the best single cause explains something and leaves something.
+
+    samples : fitted ones; noise alone costs half of their number
+    """
+    return first.log_odds > TAKEN * max(null.cost - 0.5 * samples, 0.0) and first.fitted.chi_fit > enough(null, LEFT)
+
+
 def _with(search_: Search, more: Sequence[Found]) -> Search:
     """A search that found some more."""
     found = sorted((*search_.found, *(scored(item, search_.base) for item in more)), key=lambda item: -item.log_odds)
@@ -98,7 +106,7 @@ def gather(
     single = search(team, coarse, null, groups, tried, report=said)
     first = single.found[0] if single.found else None
     pair = None
-    if first is not None and first.log_odds > TAKEN * null.cost and first.fitted.chi_fit > enough(null, LEFT):
+    if first is not None and wants_second(null, first, int(np.count_nonzero(coarse.fit))):
         again = partial(_second, said)
         pair = search(team, coarse, first.fitted, groups, tried, among=single.likely[:SECOND_LOOKS], depth=SHALLOW, report=again)
     double: tuple[Found, ...] = ()
