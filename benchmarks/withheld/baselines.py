@@ -21,11 +21,10 @@ from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.search import LOOSE, Found, Suspect, suspects
 from hdrive_mbs.diagnosis.simulator import Simulator, chi_square
 from hdrive_mbs.diagnosis.step import suitable_step
+from hdrive_mbs.diagnosis.verdict import ODDS
 
 FOLLOWED, STEPS = 4, 10
 """Laws that the fit without joint parameters follows to the end, and steps that each may take."""
-ODDS = 8.0
-"""Log odds from which it claims a cause."""
 
 
 def no_refit(bench: str, folder: Path) -> Solved:

@@ -197,7 +197,8 @@ def search(
 def enough(base: Fitted, least: float) -> float:
     """Mean square below which nothing is left that is worth a search: some value, or what a law that is nearly right leaves.
 
-    A law never is what the machine does: of a cause with a thousand times the power of the noise it misses some thousandths.
+    A law never is what the machine does.  Of the practice cases, rotor-p03 leaves 1.2 to 1.5 of 4,100 with the right law at the right
+    place, another plant's clearance.
     """
     return max(least, float(base.chi_fit**SMALL))
 
