@@ -17,6 +17,7 @@ import typer
 from hdrive_mbs.cli.options import JsonFile
 from hdrive_mbs.cli.output import write_json
 from hdrive_mbs.cli.python_file import imported, lines_named, own_effects
+from hdrive_mbs.cli.records_options import BenchFile, Channels, OwnEffects, Repairs, TimeColumn, Units, reading_of
 from hdrive_mbs.cli.stages import stage_bars
 from hdrive_mbs.errors import FileFormatError, HdriveError, SceneError
 from hdrive_mbs.scene import Scene
@@ -34,27 +35,16 @@ WORK, JOB, INPUTS = "work", "job.json", "inputs.json"
 
 
 def diagnose(
-    scene: Annotated[
-        Path, typer.Argument(metavar="SCENE", help="A .py file with bench() -> Bench, or with build() -> Scene, or a scene file.")
-    ],
+    scene: BenchFile,
     records: Annotated[
         list[Path], typer.Option("--records", metavar="DIR_OR_FILES", help="A folder or files of measured records; several may follow.")
     ],
     more: Annotated[list[Path] | None, typer.Argument(metavar="[RECORD]...", help="More records: what follows --records.")] = None,
-    effects: Annotated[
-        list[Path] | None, typer.Option("--effects", metavar="FILE.py", help="A file of your own whose Effect classes are tried too.")
-    ] = None,
-    channel: Annotated[
-        list[str] | None,
-        typer.Option("--channel", metavar="COLUMN=PLACE.QUANTITY", help="What a column measures, e.g. n_mot=motor.speed (several times)."),
-    ] = None,
-    unit: Annotated[
-        list[str] | None, typer.Option("--unit", metavar="COLUMN=UNIT", help="Unit of a column where the file says none (several times).")
-    ] = None,
-    time: Annotated[str | None, typer.Option("--time", metavar="COLUMN", help="Column with the time, or a rate like '5 kHz'.")] = None,
-    repair: Annotated[
-        list[str] | None, typer.Option("--repair", metavar="FAULT=HOW", help="Repair records, e.g. gaps=interpolate (several times).")
-    ] = None,
+    effects: OwnEffects = None,
+    channel: Channels = None,
+    unit: Units = None,
+    time: TimeColumn = None,
+    repair: Repairs = None,
     workers: Annotated[int | None, typer.Option(help="Processes on this machine; 2 where it has two cores.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with an interrupted diagnosis in --out.")] = False,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for report, pictures and the improved scene.")] = None,
@@ -63,12 +53,7 @@ def diagnose(
     """Say where the gap between simulation and records lies, which effect causes it, and how far it shrinks once that is added."""
     chosen = open_bench(scene)
     kinds = tried(effects or ())
-    reading: dict[str, Any] = {
-        "channels": pairs("--channel", channel) or None,
-        "units": pairs("--unit", unit),
-        "time": time,
-        "repair": pairs("--repair", repair) or None,
-    }
+    reading = reading_of(channel, unit, time, repair)
     paths = [*records, *(more or ())]
     measured = measured_in(paths, reading)
     name = chosen.name if isinstance(chosen, Scene) else chosen.scene.name
@@ -159,17 +144,6 @@ def measured_in(paths: Sequence[Path], reading: Mapping[str, Any]) -> Records:
     if files:
         found.append(read_records(files, **reading))
     return Records(records=tuple(record for records in found for record in records))
-
-
-def pairs(option: str, texts: Sequence[str] | None) -> dict[str, str]:
-    """``NAME=VALUE`` -> a mapping."""
-    found = {}
-    for text in texts or ():
-        name, sign, value = (part.strip() for part in text.partition("="))
-        if not (name and sign and value):
-            raise FileFormatError(f"{option} {text!r}: write NAME=VALUE.")
-        found[name] = value
-    return found
 
 
 def _job(scene: Path, records: Records, effects: Sequence[Path], reading: Mapping[str, Any]) -> dict[str, Any]:

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hdrive_mbs.cli.case_diagnosis import CaseDiagnosis, GivenFile, cases_in, content_hash
-from hdrive_mbs.cli.diagnose import WORK, open_bench, pairs, tried
+from hdrive_mbs.cli.diagnose import WORK, open_bench, tried
 from hdrive_mbs.cli.options import JsonFile
 from hdrive_mbs.cli.output import print_table, write_json
+from hdrive_mbs.cli.records_options import BenchFile, Channels, OwnEffects, Repairs, TimeColumn, Units, reading_of
 from hdrive_mbs.cli.sweep import cell, tell_failures
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.writing import write_bytes, write_text
@@ -26,9 +27,7 @@ NOTE = "README"
 
 
 def diagnose_all(
-    scene: Annotated[
-        Path, typer.Argument(metavar="SCENE", help="A .py file with bench() -> Bench, or with build() -> Scene, or a scene file.")
-    ],
+    scene: BenchFile,
     records: Annotated[
         list[Path],
         typer.Option(
@@ -36,19 +35,11 @@ def diagnose_all(
         ),
     ],
     more: Annotated[list[Path] | None, typer.Argument(metavar="[DIR]...", help="More cases: what follows --records.")] = None,
-    effects: Annotated[
-        list[Path] | None, typer.Option("--effects", metavar="FILE.py", help="A file of your own whose Effect classes are tried too.")
-    ] = None,
-    channel: Annotated[
-        list[str] | None, typer.Option("--channel", metavar="COLUMN=PLACE.QUANTITY", help="What a column measures (several times).")
-    ] = None,
-    unit: Annotated[
-        list[str] | None, typer.Option("--unit", metavar="COLUMN=UNIT", help="Unit of a column where the file says none (several times).")
-    ] = None,
-    time: Annotated[str | None, typer.Option("--time", metavar="COLUMN", help="Column with the time, or a rate like '5 kHz'.")] = None,
-    repair: Annotated[
-        list[str] | None, typer.Option("--repair", metavar="FAULT=HOW", help="Repair records, e.g. gaps=interpolate (several times).")
-    ] = None,
+    effects: OwnEffects = None,
+    channel: Channels = None,
+    unit: Units = None,
+    time: TimeColumn = None,
+    repair: Repairs = None,
     workers: Annotated[int | None, typer.Option(help="Cases side by side, a process each; as many as the machine has cores.")] = None,
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Use the dask cluster of this scheduler, like tcp://host:8786.")
@@ -64,12 +55,7 @@ def diagnose_all(
 
     opened = open_bench(scene)
     tried(effects or ())  # says now what would fail in every case
-    reading: dict[str, Any] = {
-        "channels": pairs("--channel", channel) or None,
-        "units": pairs("--unit", unit),
-        "time": time,
-        "repair": pairs("--repair", repair) or None,
-    }
+    reading = reading_of(channel, unit, time, repair)
     cases = cases_in([*records, *(more or ())])
     folder = out or Path("results") / re.sub(r"\W+", "_", f"diagnoses {scene.stem}")
     work = folder.resolve() / WORK

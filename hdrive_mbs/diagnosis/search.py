@@ -220,7 +220,7 @@ class _Work:
         first = self._looked(screen, [plain, *simple], [item.first for item in (plain, *simple)], "looking at candidates")
         before = min([model.cost, *(look.cost for suspect, look in first if suspect is plain)])
         first = [pair for pair in first if pair[0] is not plain]
-        spread = _spread(first)
+        spread = spread_out(first)
         chosen = [suspect.label for suspect, _ in spread[: _worth(before, [look.cost for _, look in spread], self.how.brief)]]
         closer = [pair for pair in first if pair[0].label in chosen]
         if self.how.laws > 1:
@@ -231,7 +231,7 @@ class _Work:
         brief = _cheapest(self.fitted(tasks, "a few joint steps"))
         kept = brief[: _worth(base.cost, [item.fitted.cost for item in brief], self.how.kept)]
         thorough = [
-            (k < self.how.serious or item.suspect.label == kept[0].suspect.label) and not _beyond(item.fitted, kept[0].fitted)
+            (k < self.how.serious or item.suspect.label == kept[0].suspect.label) and not beyond(item.fitted, kept[0].fitted)
             for k, item in enumerate(kept)
         ]
         further_ = [further(item.fitted, *((CONVERGED, FINE, 1) if end else (STEPS,))) for item, end in zip(kept, thorough, strict=True)]
@@ -257,7 +257,7 @@ def those_that_ran(suspects_: Sequence[Suspect], fits: Sequence[Fitted | None]) 
     return [Found(suspect, fitted) for suspect, fitted in zip(suspects_, fits, strict=True) if fitted is not None]
 
 
-def _beyond(fitted: Fitted, leading: Fitted) -> bool:
+def beyond(fitted: Fitted, leading: Fitted) -> bool:
     """Whether a law is so far from the records that it will not catch up with one that is near."""
     return leading.chi_fit < NEAR and fitted.chi_fit > HOPELESS * leading.chi_fit
 
@@ -358,7 +358,7 @@ def _before(suspect: Suspect) -> tuple[bool, int]:
     return not (suspect.law != PARAMETER and type(hypothesis.added[-1].effect).leads), hypothesis.size
 
 
-def _spread(looks: Sequence[tuple[Suspect, Look]]) -> list[tuple[Suspect, Look]]:
+def spread_out(looks: Sequence[tuple[Suspect, Look]]) -> list[tuple[Suspect, Look]]:
     """The best looks without more than PLACES of one family: on a stiff shaft a torque looks the same everywhere.
 
     Parameters all count as families of their own.

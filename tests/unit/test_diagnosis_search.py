@@ -11,12 +11,14 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.diagnose import factors_of
-from hdrive_mbs.diagnosis.fit import fit, jacobian, secant
+from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian, secant
+from hdrive_mbs.diagnosis.gather import wants_second
 from hdrive_mbs.diagnosis.ground import held
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
 from hdrive_mbs.diagnosis.pairs import alone
-from hdrive_mbs.diagnosis.search import ENOUGH, Found, Suspect, Task, enough, run_task, simplest, suspects
+from hdrive_mbs.diagnosis.screening import Look
+from hdrive_mbs.diagnosis.search import ENOUGH, PARAMETER, Found, Suspect, Task, beyond, enough, run_task, simplest, spread_out, suspects
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.verdict import judge
@@ -151,3 +153,51 @@ def test_a_size_of_zero_runs_on_the_same_machine_code_as_any_other(simulator: Si
 def test_a_family_is_led_by_the_law_that_says_so() -> None:
     everything = suspects(Hypothesis(()), {}, candidates(rotor_bench.bench().scene, [hm.DynamicUnbalance, hm.RotorUnbalance, hm.ShaftBow]))
     assert {suspect.law for suspect in simplest(everything)} == {"RotorUnbalance", "ShaftBow"}
+
+
+def test_a_family_gets_two_places_at_most_and_a_parameter_is_a_family_of_its_own() -> None:
+    empty = Hypothesis(())
+    look = Look(empty, np.zeros(0), 0.0, np.zeros(0))
+    labels = [("torque", "a"), ("torque", "b"), ("torque", "c"), ("crack", "shaft"), ("torque", "d"), ("rub", "a")]
+    parameters = [("parameter", name) for name in ("mass", "stiffness", "damping")]
+    looks = [(Suspect(label, "Law", (empty,), (empty,)), look) for label in labels]
+    looks += [(Suspect(label, PARAMETER, (empty,), (empty,)), look) for label in parameters]
+    assert [suspect.label for suspect, _ in spread_out(looks)] == [
+        ("torque", "a"), ("torque", "b"), ("crack", "shaft"), ("rub", "a"), *parameters,
+    ]  # fmt: skip
+
+
+def left_with(simulator: Simulator, *, cost: float, chi_fit: float) -> Fitted:
+    """A fitted model that is said to leave so much."""
+    hypothesis = Hypothesis(factors_of(BENCH))
+    return dataclasses.replace(fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=0), cost=cost, chi_fit=chi_fit, chi_held=chi_fit)
+
+
+@pytest.mark.parametrize(
+    ("leading", "other", "hopeless"),
+    [(1.5, 16.0, True), (1.5, 14.0, False), (50.0, 5000.0, False)],  # nothing is hopeless beside one that is not near itself
+)
+def test_a_law_is_hopeless_beside_one_that_is_near(simulator: Simulator, leading: float, other: float, hopeless: bool) -> None:
+    assert beyond(left_with(simulator, cost=1.0, chi_fit=other), left_with(simulator, cost=1.0, chi_fit=leading)) is hopeless
+
+
+@pytest.mark.parametrize(
+    ("cost", "odds", "leaves", "wants"),
+    [
+        (60_000.0, 900.0, 1.5, True),  # 9 % of the 10,000 above noise, 1.5 % of all
+        (60_000.0, 400.0, 1.5, False),  # explains next to nothing: a second would be another first
+        (60_000.0, 9_900.0, 1.05, False),  # leaves nothing
+        (49_000.0, 5.0, 1.5, True),  # less than noise: any gain is a share
+    ],
+)
+def test_a_second_cause_is_asked_for_where_the_first_explains_something_and_leaves_something(
+    simulator: Simulator, cost: float, odds: float, leaves: float, wants: bool
+) -> None:
+    null = left_with(simulator, cost=cost, chi_fit=1.6)
+    hypothesis = Hypothesis(factors_of(BENCH), (Added(hm.ViscousDrag(coefficient=0.01), "load", "drag"),))
+    found = Found(
+        Suspect(("viscous_drag", "load"), "ViscousDrag", (hypothesis,), (hypothesis,)),
+        left_with(simulator, cost=cost - odds, chi_fit=leaves),
+        odds,
+    )
+    assert wants_second(null, found, samples=100_000) is wants

@@ -1,0 +1,50 @@
+"""Options of the commands that read measured records, and what they say to the reader."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from hdrive_mbs.errors import FileFormatError
+
+BenchFile = Annotated[
+    Path, typer.Argument(metavar="SCENE", help="A .py file with bench() -> Bench, or with build() -> Scene, or a scene file.")
+]
+OwnEffects = Annotated[
+    list[Path] | None, typer.Option("--effects", metavar="FILE.py", help="A file of your own whose Effect classes are tried too.")
+]
+Channels = Annotated[
+    list[str] | None,
+    typer.Option("--channel", metavar="COLUMN=PLACE.QUANTITY", help="What a column measures, e.g. n_mot=motor.speed (several times)."),
+]
+Units = Annotated[
+    list[str] | None, typer.Option("--unit", metavar="COLUMN=UNIT", help="Unit of a column where the file says none (several times).")
+]
+TimeColumn = Annotated[str | None, typer.Option("--time", metavar="COLUMN", help="Column with the time, or a rate like '5 kHz'.")]
+Repairs = Annotated[
+    list[str] | None, typer.Option("--repair", metavar="FAULT=HOW", help="Repair records, e.g. gaps=interpolate (several times).")
+]
+
+
+def reading_of(channel: Sequence[str] | None, unit: Sequence[str] | None, time: str | None, repair: Sequence[str] | None) -> dict[str, Any]:
+    """What ``read_records`` is told besides the files.  Raises FileFormatError for a text that is not NAME=VALUE."""
+    return {
+        "channels": _pairs("--channel", channel) or None,
+        "units": _pairs("--unit", unit),
+        "time": time,
+        "repair": _pairs("--repair", repair) or None,
+    }
+
+
+def _pairs(option: str, texts: Sequence[str] | None) -> dict[str, str]:
+    """``NAME=VALUE`` -> a mapping."""
+    found = {}
+    for text in texts or ():
+        name, sign, value = (part.strip() for part in text.partition("="))
+        if not (name and sign and value):
+            raise FileFormatError(f"{option} {text!r}: write NAME=VALUE.")
+        found[name] = value
+    return found
