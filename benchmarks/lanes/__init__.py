@@ -1,0 +1,1 @@
+"""How many lanes of a vector register pay for compiled runs."""

@@ -1,0 +1,28 @@
+"""Results of the lanes as text."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+
+def report(numbers: Mapping[str, Any]) -> str:
+    """Time of a run against that in one lane, and what it costs for each lane."""
+    lines = [
+        "# Lanes of compiled runs",
+        "",
+        f"{numbers['about']['processor']}; {numbers['lanes_used']} lanes are used on it. CPU seconds, least of {numbers['repeats']}.",
+        "Shares are of one lane's time: of the whole run, and of it for each lane.",
+        "",
+        "| model | lanes | machine code [s] | run [ms] | of one lane | each lane | apart |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for model in dict.fromkeys(row["model"] for row in numbers["rows"]):
+        rows = [row for row in numbers["rows"] if row["model"] == model]
+        one = rows[0]["run_s"]
+        lines += [
+            f"| {model} | {row['width']} | {row['compile_s']:.2f} | {1e3 * row['run_s']:.1f} | {row['run_s'] / one:.2f}"
+            f" | {row['run_s'] / one / row['width']:.2f} | {row['apart']:.0e} |"
+            for row in rows
+        ]
+    return "\n".join([*lines, ""])
