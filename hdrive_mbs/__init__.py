@@ -173,6 +173,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.shaft_kink": ("ShaftKink",),
     "effects.misalignment": ("Misalignment",),
     "effects.oil_whirl": ("OilWhirl",),
+    "effects.oil_whirl_onset": ("OilWhirlOnset",),
     "effects.ball_pass": ("BallPass",),
     "effects.ball_pass_harmonics": ("BallPassHarmonics",),
     "effects.inner_race_pass": ("InnerRacePass",),

@@ -19,6 +19,7 @@ from hdrive_mbs.diagnosis.locate.motion import Motion, motion_of
 from hdrive_mbs.diagnosis.locate.spectra import windowed
 from hdrive_mbs.diagnosis.result import DomainBin
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.turning import reference_shaft
 from hdrive_mbs.network.elements import Connection
 
 FloatArray = npt.NDArray[np.float64]
@@ -88,25 +89,10 @@ def _stretch(simulator: Simulator, null: Fitted, claimed: Fitted | None, k: int)
     used = np.array([simulator.used[span] for span in spans])
     before = np.array([null.residuals[span] for span in spans]) * used
     after = np.full(before.shape, np.nan) if claimed is None else np.array([claimed.residuals[span] for span in spans]) * used
-    speed, angle = _reference(motion)
+    speed, angle = reference_shaft(motion)
     torque = _torque(motion)
     trial = simulator.trials[k]
     return _Stretch(trial.times[::each], speed[::each], angle[::each], torque[::each], used, before, after, trial.every * each)
-
-
-def _reference(motion: Motion) -> tuple[FloatArray, FloatArray]:
-    """Speed and angle of the shaft of the motor, in its true sense."""
-    network, times = motion.network, motion.trial.times
-    turning = [(body.name, body.sense, body.ratio) for body in network.bodies if not body.lateral]
-    given = [(item.name, item.sense, item.ratio) for item in network.motions if item.name != "ground"]
-    for name, sense, ratio in (*given, *turning):
-        if abs(ratio) == 1.0:
-            if f"speed:{name}" in motion.values:
-                return sense * motion.values[f"speed:{name}"], sense * motion.values[f"angle:{name}"]
-            moment, shape = network.moment(times, {}, {}, {}), times.shape
-            speed, angle = (np.broadcast_to(np.asarray(v, float), shape) for v in (moment.speed(name), moment.angle(name)))
-            return sense * speed, sense * angle
-    return np.zeros(len(times)), np.zeros(len(times))
 
 
 def _torque(motion: Motion) -> FloatArray:

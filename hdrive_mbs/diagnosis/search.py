@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.diagnosis.beginnings import begun_at, is_periodic
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.evidence import log_evidence
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.ground import as_known, held, screen_from
 from hdrive_mbs.diagnosis.hops import settled
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.periods import Periods
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.team import Team
@@ -80,6 +82,11 @@ class Suspect:
     law: str
     first: tuple[Hypothesis, ...]
     all: tuple[Hypothesis, ...]
+
+    @property
+    def is_periodic(self) -> bool:
+        """Whether it is a law with a period to begin at."""
+        return self.law != PARAMETER and is_periodic(self.first[0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,16 +180,16 @@ def search(
     Where all of them leave something, the same is done with the likeliest, the parameters held near the values of the data sheet.
     What came out best is then tried at all other places where it may sit, from the values found.
 
-    among : labels that are looked at, all if not given
+    among : labels that are looked at besides laws with a period, which show less beside something stronger; all if not given
     """
     how = depth or Depth()
     work = _Work(team, simulator, report or (lambda stage, done, total: None), how)
-    everything = [item for item in suspects(base.hypothesis, groups, tried) if among is None or item.label in among]
+    everything = [item for item in suspects(base.hypothesis, groups, tried) if among is None or item.label in among or item.is_periodic]
     found, first = work.from_ground(base, base, everything)
     looks = {f"{suspect.law} at {suspect.label[1]}": cost for suspect, cost in first}
     if how.laws > 1 and base.chi_fit > FAR and not any(item.fitted.chi_fit < enough(base, ENOUGH) for item in found):
         likely = {suspect.label for suspect, _ in first[:SECOND_LOOKS]}
-        more, _ = work.from_ground(held(simulator, base), base, [item for item in everything if item.label in likely])
+        more, _ = work.from_ground(held(simulator, base), base, [item for item in everything if item.label in likely or item.is_periodic])
         found = _cheapest([*found, *more])
     if how.laws > 1:
         moved = _elsewhere(found[0] if found else None, base, everything) + _restarts(found)
@@ -215,6 +222,7 @@ class _Work:
     def from_ground(self, model: Fitted, base: Fitted, everything: Sequence[Suspect]) -> tuple[list[Found], list[tuple[Suspect, float]]]:
         """What is found from a model at some point, and the cost of the first looks, both best first."""
         screen = screen_from(self.simulator, model)
+        everything = self._begun(everything, model)
         simple = simplest(everything)
         plain = Suspect(("none", ""), "none", (model.hypothesis,), (model.hypothesis,))
         first = self._looked(screen, [plain, *simple], [item.first for item in (plain, *simple)], "looking at candidates")
@@ -237,6 +245,14 @@ class _Work:
         further_ = [further(item.fitted, *((CONVERGED, FINE, 1) if end else (STEPS,))) for item, end in zip(kept, thorough, strict=True)]
         found = self.fitted([(item.suspect, task) for item, task in zip(kept, further_, strict=True)], "fitting the best")
         return _cheapest(found), [(suspect, look.cost) for suspect, look in first]
+
+    def _begun(self, everything: Sequence[Suspect], model: Fitted) -> list[Suspect]:
+        """Laws with a period begin at those that stand out in what the model leaves."""
+        periods = Periods(self.simulator, model)
+        return [
+            replace(item, first=begun_at(item.first, periods), all=begun_at(item.all, periods)) if item.is_periodic else item
+            for item in everything
+        ]
 
     def fitted(self, asked: Sequence[tuple[Suspect, Task]], words: str) -> list[Found]:
         """Suspects with their tasks done; those that cannot be run from where they begin are left out."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -39,6 +40,7 @@ class BallPass(LateralEffect):
     acts_on: ClassVar[str] = "bearing"
     family: ClassVar[str] = "ball_pass"
     excites: ClassVar[bool] = True
+    periodic: ClassVar[Mapping[str, str]] = {"order": "turn"}
     signature: ClassVar[str] = "pulses at an order of the spin that is no whole number, with its harmonics, at one housing"
 
     def pulse(self, angle: Value, speed: Value) -> Value:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -40,6 +41,8 @@ class BallPassHarmonics(LateralEffect):
     acts_on: ClassVar[str] = "bearing"
     family: ClassVar[str] = "ball_pass"
     excites: ClassVar[bool] = True
+    periodic: ClassVar[Mapping[str, str]] = {"order": "turn"}
+    leads: ClassVar[bool] = True
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (
         ("amplitude", "phase"),
         ("second_amplitude", "second_phase"),

@@ -35,12 +35,15 @@ class BearingClearance(BearingEffect):
     """
 
     gap: float = parameter("m", "radial gap c, half of the play between the extreme positions", low=0.0, high=1e-2, typical=(5e-8, 5e-5))
-    film_stiffness: float = parameter("1", "share a of the spring that acts in the gap too", default=0.0, low=0.0, high=1.0)
+    film_stiffness: float = parameter(
+        "1", "share a of the spring that acts in the gap too", default=0.0, low=0.0, high=1.0, typical=(2e-3, 0.3)
+    )
     film_damping: float = parameter(
         "1", "share d of the damping that acts in the gap too; 1: all of it", default=1.0, low=0.0, high=1.0, typical=(0.05, 1.0)
     )
 
     family: ClassVar[str] = "bearing_clearance"
+    leads: ClassVar[bool] = True
     signature: ClassVar[str] = (
         "softer at small amplitude: resonances that rise with the amplitude, jumps, harmonics and subharmonics of the spin, "
         "a ring-down whose frequency falls"

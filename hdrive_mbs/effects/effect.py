@@ -65,6 +65,9 @@ class Effect(Described, ABC):
     phase where the amplitude is zero."""
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {}
     """Field -> values from which a search begins, one after the other.  A field without a typical range stays there."""
+    periodic: ClassVar[Mapping[str, str]] = {}
+    """Fields that are periods per turn of the shaft ("turn") or angular frequencies ("time"): away from the right value the effect
+    does not show, so a search begins at those that stand out in what is left."""
     leads: ClassVar[bool] = False
     """Whether it stands for its family in a first look, in place of the law with the fewest numbers to search."""
     decisive: ClassVar[tuple[str, ...]] = ()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -32,6 +33,7 @@ class GroundVibration(LateralEffect):
     acts_on: ClassVar[str] = "support"
     family: ClassVar[str] = "ground_vibration"
     excites: ClassVar[bool] = True
+    periodic: ClassVar[Mapping[str, str]] = {"frequency": "time"}
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("amplitude", "phase"),)
     signature: ClassVar[str] = "vibration at one frequency that stays where it is when the speed changes, largest at one housing"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -37,6 +38,7 @@ class OilWhirl(LateralEffect):
     acts_on: ClassVar[str] = "bearing"
     family: ClassVar[str] = "oil_whirl"
     excites: ClassVar[bool] = True
+    periodic: ClassVar[Mapping[str, str]] = {"ratio": "turn"}
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("amplitude", "phase"),)
     signature: ClassVar[str] = "forward whirl at 0.42 to 0.49 of the speed, strongest at one bearing"
 

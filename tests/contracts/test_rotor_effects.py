@@ -38,6 +38,7 @@ EXAMPLES = {
             ("once", "twice", "thrice"),
         ),
         Example(hm.OilWhirl(amplitude=50.0, phase=0.2, growth=1.5, reference_speed=20.0, onset=5.0), "left", ("amplitude",)),
+        Example(hm.OilWhirlOnset(amplitude=50.0, phase=0.2, onset=5.0), "left", ("amplitude",)),
         Example(hm.BallPass(amplitude=50.0, order=3.57, phase=0.2, growth=0.5, reference_speed=20.0), "left", ("amplitude",)),
         Example(hm.InnerRacePass(amplitude=50.0, order=5.43, phase=0.2), "left", ("amplitude",)),
         Example(

@@ -388,10 +388,22 @@ def test_oil_whirl_grows_with_speed_and_sets_in() -> None:
     assert size(0.0) < 1e-12
 
 
+def test_a_whirl_that_sets_in_is_one_that_is_always_there_far_above_its_threshold() -> None:
+    law, plain = hm.OilWhirlOnset(amplitude=8.0, phase=0.7, onset=300.0, onset_width=10.0), hm.OilWhirl(amplitude=8.0, phase=0.7)
+    at = (0.0, 5.0, 600.0, 0.0, 0.0, 0.0, 0.0)
+    np.testing.assert_allclose(law.force(*at), plain.force(*at), rtol=1e-12)
+    at = (0.0, 5.0, -300.0, 0.0, 0.0, 0.0, 0.0)
+    np.testing.assert_allclose(law.force(*at), 0.5 * np.array(plain.force(*at)), rtol=1e-12)
+    assert math.hypot(*(float(part) for part in law.force(0.0, 5.0, 250.0, 0.0, 0.0, 0.0, 0.0))) == pytest.approx(
+        8.0 * math.exp(-10.0), rel=1e-3
+    )
+
+
 @pytest.mark.parametrize(
     "effect",
     [
         hm.OilWhirl(amplitude=10.0),
+        hm.OilWhirlOnset(amplitude=10.0, onset=200.0),
         hm.BallPass(amplitude=10.0, order=3.57, direction=0.3),
         hm.InnerRacePass(amplitude=10.0, order=5.4, direction=0.3),
     ],
@@ -496,6 +508,7 @@ EXCITATIONS: Mapping[str, tuple[Effect, str]] = {
         (hm.ShaftKink(angle=1e-3), "section_2"),
         (hm.Misalignment(once=50.0, twice=100.0, thrice=20.0, lever=0.05), "bearing_1"),
         (hm.OilWhirl(amplitude=100.0, growth=1.5, onset=200.0), "bearing_1"),
+        (hm.OilWhirlOnset(amplitude=100.0, onset=100.0), "bearing_1"),
         (hm.BallPass(amplitude=50.0, order=3.57, growth=1.5), "bearing_2"),
         (hm.InnerRacePass(amplitude=50.0, order=5.43), "bearing_2"),
         (hm.ExternalShock(amplitude=500.0, start=0.0), "bearing_2"),

@@ -1,0 +1,33 @@
+"""Starts of laws with a period, moved to the periods that stand out in what is left."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+from collections.abc import Sequence
+
+from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.periods import Periods
+
+
+def is_periodic(hypothesis: Hypothesis) -> bool:
+    """Whether the effect that was added last has a period to begin at."""
+    return bool(hypothesis.added and type(hypothesis.added[-1].effect).periodic)
+
+
+def begun_at(starts: Sequence[Hypothesis], periods: Periods) -> tuple[Hypothesis, ...]:
+    """The same starts with the periods of the effect that was added last at those that stand out; as they are where none do."""
+    if not is_periodic(starts[0]):
+        return tuple(starts)
+    kind = type(starts[0].added[-1].effect)
+    quantities = {item.name: item.metadata["quantity"] for item in dataclasses.fields(kind) if item.name in kind.periodic}
+    found = {name: periods.standing_out(over, *quantities[name].typical) for name, over in kind.periodic.items()}
+    found = {name: values for name, values in found.items() if values}
+    made: dict[object, Hypothesis] = {}
+    for start in starts:
+        *before, last = start.added
+        for values in itertools.product(*found.values()):
+            effect = last.effect.replacing(**dict(zip(found, values, strict=True)))
+            added = Added(effect, last.at, last.name)
+            made.setdefault(effect, Hypothesis(start.factors, (*before, added), start.loose))
+    return tuple(made.values())
