@@ -41,6 +41,7 @@ class BallPass(LateralEffect):
     family: ClassVar[str] = "ball_pass"
     excites: ClassVar[bool] = True
     periodic: ClassVar[Mapping[str, str]] = {"order": "turn"}
+    vectors: ClassVar[tuple[tuple[str, str], ...]] = (("amplitude", "phase"),)
     signature: ClassVar[str] = "pulses at an order of the spin that is no whole number, with its harmonics, at one housing"
 
     def pulse(self, angle: Value, speed: Value) -> Value:

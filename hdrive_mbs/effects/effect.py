@@ -61,8 +61,8 @@ class Effect(Described, ABC):
     tried: ClassVar[bool] = True
     """Whether a search tries it without being asked, and lists show it."""
     vectors: ClassVar[tuple[tuple[str, str], ...]] = ()
-    """Pairs of fields (amplitude, phase [rad]) in which a search turns amplitude cos and amplitude sin: linear, and no
-    phase where the amplitude is zero."""
+    """Pairs of fields (amplitude, phase [rad]) in which a search turns amplitude cos and amplitude sin: linear (in its
+    first harmonic), and no phase where the amplitude is zero."""
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {}
     """Field -> values from which a search begins, one after the other.  A field without a typical range stays there."""
     periodic: ClassVar[Mapping[str, str]] = {}

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -27,6 +28,7 @@ class InnerRacePass(BallPass):
 
     load_direction: float = parameter("rad", "b, from x towards y", default=-0.5 * np.pi)
 
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"direction": (-0.5 * np.pi, 0.0, 0.5 * np.pi, np.pi)}
     signature: ClassVar[str] = "pulses at an order of the spin that is no whole number, with sidebands one order apart, at one housing"
 
     def force(self, time: Value, angle: Value, speed: Value, x: Value, y: Value, x_rate: Value, y_rate: Value) -> tuple[Value, Value]:

@@ -253,6 +253,8 @@ def test_a_pair_of_amplitude_and_phase_turns_like_a_vector(example: Example) -> 
     # half a turn makes it its negative; a couple unbalance of 1e-5 kg m^2 bends that by its share of the moment of inertia, 3e-4
     bare = _response(line())
     small = without_size(example)
+    if isinstance(small, hm.BallPass):
+        small = small.replacing(sharpness=0.0)  # its harmonics turn by multiples of the phase
     assert {name for pair in type(example.effect).vectors for name in pair} <= {name for name, _, _ in example.effect.fields()}
     for size, phase in type(example.effect).vectors:
         assert next(metadata["quantity"].unit for name, _, metadata in example.effect.fields() if name == phase) == "rad"
