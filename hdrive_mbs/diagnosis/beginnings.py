@@ -9,6 +9,9 @@ from collections.abc import Sequence
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.periods import Periods
 
+MANY, FEW = 12, 2
+"""Starts of a law that are made, about, and periods that are tried at least."""
+
 
 def is_periodic(hypothesis: Hypothesis) -> bool:
     """Whether the effect that was added last has a period to begin at."""
@@ -23,11 +26,12 @@ def begun_at(starts: Sequence[Hypothesis], periods: Periods) -> tuple[Hypothesis
     quantities = {item.name: item.metadata["quantity"] for item in dataclasses.fields(kind) if item.name in kind.periodic}
     found = {name: periods.standing_out(over, *quantities[name].typical) for name, over in kind.periodic.items()}
     found = {name: values for name, values in found.items() if values}
-    made: dict[object, Hypothesis] = {}
-    for start in starts:
-        *before, last = start.added
-        for values in itertools.product(*found.values()):
-            effect = last.effect.replacing(**dict(zip(found, values, strict=True)))
-            added = Added(effect, last.at, last.name)
-            made.setdefault(effect, Hypothesis(start.factors, (*before, added), start.loose))
-    return tuple(made.values())
+    combinations = [dict(zip(found, values, strict=True)) for values in itertools.product(*found.values())]
+    others = {start.added[-1].effect.replacing(**combinations[0]): start for start in starts}  # starts that differ in the rest
+    made = []
+    for values in combinations[: max(FEW, MANY // len(others))]:
+        for effect, start in others.items():
+            *before, last = start.added
+            added = Added(effect.replacing(**values), last.at, last.name)
+            made.append(Hypothesis(start.factors, (*before, added), start.loose))
+    return tuple(made)

@@ -102,7 +102,7 @@ def test_laws_with_a_period_begin_at_what_stands_out_and_others_stay() -> None:
         match effects[0]:
             case hm.OilWhirlOnset():
                 assert [(item.ratio, item.onset) for item in effects] == [  # type: ignore[attr-defined]
-                    (ratio, onset) for onset in hm.OilWhirlOnset.starts["onset"] for ratio in (0.43, 0.47)
+                    (ratio, onset) for ratio in (0.43, 0.47) for onset in hm.OilWhirlOnset.starts["onset"]
                 ]
             case hm.BallPassHarmonics():  # three orders that it would begin at are one now
                 assert [item.order for item in effects] == [0.43, 0.47]  # type: ignore[attr-defined]
