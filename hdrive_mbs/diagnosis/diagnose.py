@@ -161,12 +161,19 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
     )
 
 
+def localised_about(evidence: Evidence) -> Fitted:
+    """The model that the place of a gap is looked for from.
+
+    On a rotor line that is the one as given: the localisation refits on its own there, and a missing cause bends the fitted one most.
+    """
+    lateral = any(trial.scene.network().is_lateral for trial in evidence.fine.trials)
+    return evidence.nominal if lateral else evidence.null
+
+
 def _located(evidence: Evidence, notes: list[str]) -> tuple[tuple[Place, ...], Localiser | None]:
     """Places of the gap, most probable first; a note where they cannot be found."""
     try:
-        # on a rotor line the localisation refits on its own, and a missing cause bends the fitted model most
-        lateral = evidence.fine.trials[0].scene.network().is_lateral
-        localiser = Localiser(evidence.fine, evidence.nominal if lateral else evidence.null)
+        localiser = Localiser(evidence.fine, localised_about(evidence))
         if localiser.doubt:
             notes.append(f"Place of the gap: {localiser.doubt}")
         return localiser.places(), localiser

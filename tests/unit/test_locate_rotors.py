@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from hdrive_mbs.diagnosis.diagnose import localised_about
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.locate import NOWHERE, Localiser
@@ -19,6 +21,7 @@ from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.unknowns import Factor
 from models import rotor_bench as bench
+from tests.unit import diagnosis_cases
 
 SAMPLES, SPEED = 6000, 380.0
 """1.5 s at 4 kHz; rad/s, between the first critical speeds of the bench."""
@@ -236,3 +239,13 @@ def test_an_observer_forgets_a_vibration_soon_after_its_force_has_ended() -> Non
     # 50 ms later 0.5 % of damping has left exp(-0.005*300*0.05) = 93 % of the slow vibration
     assert np.max(np.abs(read[0, :, later:])) > 0.5 * np.max(np.abs(read[0, :, :end]))
     assert np.max(np.abs(errors[:, later:])) < 1e-3 * np.max(np.abs(errors[:, :end]))
+
+
+def test_a_diagnosis_looks_for_the_place_from_the_model_as_given_on_rotor_lines_alone() -> None:
+    """A missing cause bends the refitted model of a rotor line, and the localisation refits on its own."""
+    drive = diagnosis_cases.bench()
+    trials = {"lateral": [trial()], "torsional": drive.trials(diagnosis_cases.quiet()[0])}
+    for kind, wanted in (("lateral", "nominal"), ("torsional", "null")):
+        fine = SimpleNamespace(trials=trials[kind])
+        evidence = SimpleNamespace(fine=fine, nominal="nominal", null="null")
+        assert localised_about(evidence) == wanted  # type: ignore[arg-type, comparison-overlap]
