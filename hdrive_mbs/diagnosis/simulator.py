@@ -25,6 +25,8 @@ BLOCKS = 12
 """Stretches of a record, each with its own scale where the model is wrong."""
 KEPT = 16
 """Runs of each trial that are kept: an effect of sensors or of the drive leaves some trials as they are."""
+AT_ONCE = 16
+"""Points that are run at once: more take memory for their whole courses, of which residuals keep a part."""
 LARGEST = 1e7
 """A whitened residual beyond it counts as this: such a run is far from the record."""
 
@@ -103,6 +105,10 @@ class Simulator:
 
     def residuals(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[FloatArray | None]:
         """Whitened residuals at each point, shape (size,); None where a point cannot be simulated."""
+        parts = (points[first : first + AT_ONCE] for first in range(0, len(points), AT_ONCE))
+        return [item for part in parts for item in self._residuals(hypothesis, part)]
+
+    def _residuals(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[FloatArray | None]:
         found: list[FloatArray | None] = [np.empty(self.size) for _ in points]
         index = 0
         starts = self._lines.at(hypothesis, points)
