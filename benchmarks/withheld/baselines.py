@@ -18,9 +18,10 @@ from hdrive_mbs.diagnosis.evidence import log_evidence
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.screening import Look, Screen
-from hdrive_mbs.diagnosis.search import LOOSE, Found, Suspect, suspects
 from hdrive_mbs.diagnosis.simulator import Simulator, chi_square
 from hdrive_mbs.diagnosis.step import suitable_step
+from hdrive_mbs.diagnosis.suspects import LOOSE, Suspect, suspects
+from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.verdict import ODDS
 
 FOLLOWED, STEPS = 4, 10

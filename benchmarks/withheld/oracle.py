@@ -23,9 +23,10 @@ from hdrive_mbs.diagnosis.diagnose import EVERY, factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian
 from hdrive_mbs.diagnosis.hypothesis import FloatArray
 from hdrive_mbs.diagnosis.screening import Screen
-from hdrive_mbs.diagnosis.search import fit_nominal, suspects
+from hdrive_mbs.diagnosis.search import fit_nominal
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.step import suitable_step
+from hdrive_mbs.diagnosis.suspects import suspects
 
 STEPS, SHARE = 30, 1e-4
 """Steps of each law on a part of the samples, and the relative change of the cost that ends them."""

@@ -14,7 +14,7 @@ from hdrive_mbs.diagnosis import verdict
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.gather import Evidence
 from hdrive_mbs.diagnosis.result import Diagnosis
-from hdrive_mbs.diagnosis.search import Found
+from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.verdict import Claim, judge
 
 LOOKS = 30

@@ -27,9 +27,10 @@ from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.locate import NOWHERE, Localiser
 from hdrive_mbs.diagnosis.pictured import pictured
 from hdrive_mbs.diagnosis.result import Cause, Diagnosis, Place, Separation
-from hdrive_mbs.diagnosis.search import Found, Label
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.step import suitable_step
+from hdrive_mbs.diagnosis.suspects import Label
+from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.traces import traces
 from hdrive_mbs.diagnosis.unknowns import Factor

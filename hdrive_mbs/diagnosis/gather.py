@@ -9,25 +9,13 @@ from functools import partial
 import numpy as np
 
 from hdrive_mbs.diagnosis.candidates import Candidate
+from hdrive_mbs.diagnosis.choosing import enough
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.pairs import alone, joined, swapped
-from hdrive_mbs.diagnosis.search import (
-    FINE,
-    HOPS,
-    NEAR,
-    Depth,
-    Found,
-    Report,
-    Search,
-    Task,
-    enough,
-    fit_nominal,
-    run_task,
-    scored,
-    search,
-    suspects,
-)
+from hdrive_mbs.diagnosis.search import HOPS, Depth, Report, Search, fit_nominal, search
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.suspects import suspects
+from hdrive_mbs.diagnosis.tasks import FINE, NEAR, Found, Task, run_task, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import AnalysisError

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
-from hdrive_mbs.diagnosis.search import CONVERGED, FINE, Found, Label, Suspect, Task, renamed, run_task, those_that_ran
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.suspects import Label, Suspect, renamed
+from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, Found, Task, run_task, those_that_ran
 from hdrive_mbs.diagnosis.team import Team
 
 TOGETHER = 5

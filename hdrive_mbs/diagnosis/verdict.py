@@ -12,7 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.search import Found, Label
+from hdrive_mbs.diagnosis.suspects import Label
+from hdrive_mbs.diagnosis.tasks import Found
 
 ODDS, PARAMETER_ODDS = 18.0, 4.5
 """Log odds below which an effect, and a parameter out of its tolerance, is not claimed.  There are many laws, which

@@ -17,8 +17,8 @@ from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.locate.motion import motion_of
 from hdrive_mbs.diagnosis.periods import MOST, TIME, TURN, Periods
-from hdrive_mbs.diagnosis.search import suspects
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.suspects import suspects
 from hdrive_mbs.diagnosis.turning import reference_shaft
 from models import rotor_bench
 from tests.unit.diagnosis_cases import bench, quiet

@@ -10,6 +10,7 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.candidates import candidates
+from hdrive_mbs.diagnosis.choosing import beyond, enough, spread_out
 from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian, secant
 from hdrive_mbs.diagnosis.gather import wants_second
@@ -18,8 +19,10 @@ from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
 from hdrive_mbs.diagnosis.pairs import alone
 from hdrive_mbs.diagnosis.screening import Look
-from hdrive_mbs.diagnosis.search import ENOUGH, PARAMETER, Found, Suspect, Task, beyond, enough, run_task, simplest, spread_out, suspects
+from hdrive_mbs.diagnosis.search import ENOUGH
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, simplest, suspects
+from hdrive_mbs.diagnosis.tasks import Found, Task, run_task
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.verdict import judge
 from hdrive_mbs.errors import AnalysisError

@@ -1,0 +1,79 @@
+"""What may explain a gap: parameters that may be off and effects that may be missing, as hypotheses to try."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from hdrive_mbs.diagnosis.beginnings import is_periodic
+from hdrive_mbs.diagnosis.candidates import Candidate
+from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+
+Label = tuple[str, str]
+
+LOOSE = 10.0
+"""Times its prior standard deviation that a suspected parameter may be off."""
+PARAMETER = "parameter"
+"""Law of a suspect that is no effect."""
+
+
+@dataclass(frozen=True, eq=False)
+class Suspect:
+    """Something that may explain the gap: a label and the hypotheses that stand for it, from several starts.
+
+    first : those for a first look;  all : every start
+    """
+
+    label: Label
+    law: str
+    first: tuple[Hypothesis, ...]
+    all: tuple[Hypothesis, ...]
+
+    @property
+    def is_periodic(self) -> bool:
+        """Whether it is a law with a period to begin at."""
+        return self.law != PARAMETER and is_periodic(self.first[0])
+
+
+def suspects(base: Hypothesis, groups: Mapping[str, Sequence[str]], tried: Sequence[Candidate]) -> list[Suspect]:
+    """Parameters that may be off, by group, and effects that may be missing, each added to a base."""
+    taken = {(type(item.effect), item.at) for item in base.added}
+    found = []
+    for group, names in groups.items():
+        if not set(names) & set(base.loose):
+            loose = {**base.loose, **dict.fromkeys(names, LOOSE)}
+            one = (Hypothesis(base.factors, base.added, loose),)
+            found.append(Suspect(("parameter", group), PARAMETER, one, one))
+    for item in tried:
+        if (item.kind, item.at) in taken:
+            continue
+
+        def with_(starts: Sequence[Added]) -> tuple[Hypothesis, ...]:
+            return tuple(Hypothesis(base.factors, (*base.added, renamed(added, base)), base.loose) for added in starts)
+
+        found.append(Suspect(item.label, item.kind.__name__, with_(item.first), with_(item.starts)))
+    return found
+
+
+def renamed(added: Added, base: Hypothesis) -> Added:
+    """An effect under a name that a base does not use yet."""
+    taken = {item.name for item in base.added}
+    name, number = added.name, 2
+    while name in taken:
+        name, number = f"{added.name}_{number}", number + 1
+    return Added(added.effect, added.at, name)
+
+
+def simplest(everything: Sequence[Suspect]) -> list[Suspect]:
+    """The law of each label that leads its family, or else has the fewest unknowns."""
+    best: dict[Label, Suspect] = {}
+    for suspect in everything:
+        known = best.get(suspect.label)
+        if known is None or _before(suspect) < _before(known):
+            best[suspect.label] = suspect
+    return list(best.values())
+
+
+def _before(suspect: Suspect) -> tuple[bool, int]:
+    hypothesis = suspect.all[0]
+    return not (suspect.law != PARAMETER and type(hypothesis.added[-1].effect).leads), hypothesis.size

@@ -1,0 +1,79 @@
+"""Fits of suspects to do, and what has come of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hdrive_mbs.diagnosis.evidence import log_evidence
+from hdrive_mbs.diagnosis.fit import Fitted, fit
+from hdrive_mbs.diagnosis.hops import settled
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.suspects import Label, Suspect
+from hdrive_mbs.errors import AnalysisError
+
+FloatArray = npt.NDArray[np.float64]
+
+FINE, CONVERGED = 1e-4, 25
+"""Relative change of the cost that ends a fit, and steps that one to the end may take."""
+NEAR = 3.0
+"""Mean square up to which hops out of hollows help, and up to which it is worth a fit of the nominal model as sharp as that of the
+causes: farther away they lead nowhere."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A fitted suspect with the logarithm of its evidence over that of the model it adds to."""
+
+    suspect: Suspect
+    fitted: Fitted
+    log_odds: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """A fit to do: where it begins, how far it may go, and hops at its end.  ``done`` is set where it is fitted already."""
+
+    hypothesis: Hypothesis
+    z: FloatArray
+    residuals: FloatArray | None
+    steps: int
+    share: float
+    done: Fitted | None = None
+    hops: int = 0
+
+
+def run_task(simulator: Simulator, task: Task) -> Fitted | None:
+    """Do it; None where it cannot be run from where it begins."""
+    try:
+        fitted = task.done or fit(simulator, task.hypothesis, task.z, steps=task.steps, share=task.share, begin=task.residuals)
+    except AnalysisError:
+        return None
+    return settled(simulator, fitted, task.hops) if task.hops and fitted.chi_fit < NEAR else fitted
+
+
+def further(fitted: Fitted, steps: int = CONVERGED, share: float = FINE, hops: int = 0) -> Task:
+    """To fit on from where a fit stands."""
+    return Task(fitted.hypothesis, fitted.z, fitted.residuals, steps, share, fitted if fitted.converged else None, hops)
+
+
+def scored(found: Found, base: Fitted) -> Found:
+    """With its log odds against the model it adds to."""
+    return Found(found.suspect, found.fitted, log_evidence(found.fitted) - log_evidence(base))
+
+
+def those_that_ran(suspects_: Sequence[Suspect], fits: Sequence[Fitted | None]) -> list[Found]:
+    """Suspects with their fits, without those that could not be run."""
+    return [Found(suspect, fitted) for suspect, fitted in zip(suspects_, fits, strict=True) if fitted is not None]
+
+
+def cheapest(found: Sequence[Found]) -> list[Found]:
+    """The best fit of each law at each place, best first."""
+    best: dict[tuple[Label, str], Found] = {}
+    for item in sorted(found, key=lambda item: item.fitted.cost):
+        best.setdefault((item.suspect.label, item.suspect.law), item)
+    return list(best.values())
