@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, lru_cache
@@ -11,6 +12,8 @@ from typing import Any
 from hdrive_mbs.compiled.llvm_code import functions
 from hdrive_mbs.compiled.runge_kutta import loop
 from hdrive_mbs.compiled.structure import Structure
+
+_NUMBERS = itertools.count()
 
 
 @dataclass(frozen=True)
@@ -35,7 +38,7 @@ class Machine:
 
     run: Callable[..., None]
     kept: Any
-    """The execution engine; its code lives as long as it does."""
+    """The library and what holds it; its code lives as long as they do."""
 
 
 @cache
@@ -48,7 +51,7 @@ def processor() -> Processor:
     return Processor(llvm.get_host_cpu_name(), features.flatten(), lanes, bool(arm or features.get("fma")))
 
 
-@lru_cache(maxsize=320)  # of about 1 MB each
+@lru_cache(maxsize=1024)  # of about 0.2 MB each, structure included
 def machine(structure: Structure, width: int = 1, *, shared: bool = True) -> Machine:
     """Compile, or take what has been compiled for the same structure in this process.
 
@@ -56,22 +59,29 @@ def machine(structure: Structure, width: int = 1, *, shared: bool = True) -> Mac
     shared : all lanes have the same inputs
     """
     llvm, host = _llvm(), processor()
+    target, linker = _linker()
     sources = [*functions(structure, width, shared=shared, fused=host.fused), *loop(structure.states, len(structure.readings), width)]
     module = llvm.parse_assembly("\n".join(dict.fromkeys(sources)))
     module.verify()
-    target = llvm.Target.from_default_triple().create_target_machine(cpu=host.name, features=host.features, opt=2)
     builder = llvm.create_pass_builder(
         target, llvm.create_pipeline_tuning_options(speed_level=0)
     )  # straight lines of code: more costs, gains nothing
     builder.getModulePassManager().run(module, builder)
-    engine = llvm.create_mcjit_compiler(module, target)
-    engine.finalize_object()
-    entry = engine.get_function_address("run")
-    engine.remove_module(module)  # a third of what is kept, of no use once the code is there
+    code = target.emit_object(module)
     module.close()
+    made = llvm.JITLibraryBuilder().add_object_img(code).export_symbol("run").add_current_process()
+    library = made.link(linker, f"library {next(_NUMBERS)}")
     pointer, real, whole = ctypes.c_void_p, ctypes.c_double, ctypes.c_int64
     kind = ctypes.CFUNCTYPE(None, pointer, real, whole, whole, whole, pointer, pointer, pointer, pointer, pointer, whole)
-    return Machine(kind(entry), (engine, target))
+    return Machine(kind(library["run"]), (library, linker))
+
+
+@cache
+def _linker() -> tuple[Any, Any]:
+    """What machine code is written for, and what puts it into memory: an engine for each piece of code would take ten times as much."""
+    llvm, host = _llvm(), processor()
+    target = llvm.Target.from_default_triple().create_target_machine(cpu=host.name, features=host.features, opt=2, jit=True)
+    return target, llvm.create_lljit_compiler(target)
 
 
 def _llvm() -> Any:
