@@ -27,26 +27,28 @@ def calibration_figure(rows: Sequence[Row]) -> Figure:
         shown = np.array([item.share for item in found])
         at = [item.confidence for item in found]
         spread = np.abs(ends.T - shown)
-        ax.errorbar(at, shown, yerr=spread, color=COLOURS[0], marker="o", linestyle="none", label="answers (number)")
+        ax.errorbar(at, shown, yerr=spread, color=COLOURS[0], marker="o", linestyle="none", label="answers (number), 95 % interval")
         for item in found:
-            ax.annotate(f" {item.of}", (item.confidence, item.share), textcoords="offset points", xytext=(4, -9), fontsize=8)
-        ax.set(xlabel="probability of the answer", ylabel="share of right answers", xlim=(0, 1.02), ylim=(0, 1.02))
-        ax.legend(loc="upper left")
+            ax.annotate(f" {item.of}", (item.confidence, item.share), textcoords="offset points", xytext=(4, 5), fontsize=8)
+        ax.set(xlabel="probability of the answer", ylabel="share of right answers", xlim=(0, 1.06), ylim=(-0.03, 1.06))
+        ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)
         return made
 
 
 def detectability_figure(rows: Sequence[Row]) -> Figure:
     """Share right by detectability, with 95 % intervals; every case as a tick."""
     with house_look():
-        made = new_figure(6.4, 3.8)
+        made = new_figure(6.4, 4.0)
         ax = made.subplots()
-        for low, high, found in by_detectability(rows):
+        steps = by_detectability(rows)
+        first = steps[0][0] if steps else None
+        for low, high, found in steps:
             ends = interval(found.right, found.of)
             middle = math.sqrt(low * high)
             ax.plot([low, high], [found.value] * 2, color=COLOURS[0], linestyle="-")
-            ax.plot([middle] * 2, ends, color=COLOURS[0], linestyle="-", linewidth=0.9)
-            ax.annotate(f"{found.right}/{found.of}", (middle, found.value), textcoords="offset points", xytext=(4, 4), fontsize=8)
-        for good, colour, level in ((True, COLOURS[2], 1.04), (False, COLOURS[1], -0.04)):
+            ax.plot([middle] * 2, ends, color=COLOURS[0], linestyle="-", linewidth=0.9, label="95 % interval" if low == first else None)
+            ax.annotate(f"{found.right}/{found.of}", (middle, found.value), textcoords="offset points", xytext=(4, -11), fontsize=8)
+        for good, colour, level in ((True, COLOURS[2], 1.06), (False, COLOURS[1], -0.06)):
             at = [row.detectability for row in rows if row.detectability is not None and row.effect == good]
             words = "right" if good else "wrong"
             ax.plot(at, [level] * len(at), color=colour, marker="|", linestyle="none", label=words)
@@ -54,9 +56,9 @@ def detectability_figure(rows: Sequence[Row]) -> Figure:
             xscale="log",
             xlabel="detectability of the faintest cause (squared distance in noise)",
             ylabel="share of right answers",
-            ylim=(-0.1, 1.1),
+            ylim=(-0.12, 1.12),
         )
-        ax.legend(loc="center right")
+        ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3)
         return made
 
 

@@ -51,7 +51,7 @@ def processor() -> Processor:
     return Processor(llvm.get_host_cpu_name(), features.flatten(), lanes, bool(arm or features.get("fma")))
 
 
-@lru_cache(maxsize=1024)  # of about 0.2 MB each, structure included
+@lru_cache(maxsize=1024)
 def machine(structure: Structure, width: int = 1, *, shared: bool = True) -> Machine:
     """Compile, or take what has been compiled for the same structure in this process.
 
@@ -78,7 +78,7 @@ def machine(structure: Structure, width: int = 1, *, shared: bool = True) -> Mac
 
 @cache
 def _linker() -> tuple[Any, Any]:
-    """What machine code is written for, and what puts it into memory: an engine for each piece of code would take ten times as much."""
+    """What machine code is written for, and the one linker that puts it into memory: an engine for each piece of code takes much more."""
     llvm, host = _llvm(), processor()
     target = llvm.Target.from_default_triple().create_target_machine(cpu=host.name, features=host.features, opt=2, jit=True)
     return target, llvm.create_lljit_compiler(target)

@@ -65,7 +65,7 @@ data : of a variable its name, of a number its value, of a constant which one it
 """
 
 
-@lru_cache(maxsize=64)  # a form takes 1 MB and is planned in a millisecond: kept for the points of a few groups
+@lru_cache(maxsize=64)  # for the points of a few groups: a form is larger than its structure, and soon planned anew
 def planned(form: Form, rates: tuple[int, ...], readings: tuple[int, ...], variables: tuple[str, ...]) -> Plan:
     """The structure of a form.  What depends on time alone and reads tables becomes an input."""
     maker = _Maker(form, (*rates, *readings), variables)

@@ -34,7 +34,7 @@ TURN, TIME = "turn", "time"
 MOST = 6
 """Peaks that are tried."""
 SMALLEST = 8
-"""Bins that the shortest period of a range has at least: a force at a bin's edge is then seen with 0.97 of its size."""
+"""Bins that the shortest period of a range has at least: sin(pi/8)/(pi/8) = 0.97 of its size is then seen."""
 FINER = 2
 """Times finer than one period over the longest record."""
 STRETCH = 64

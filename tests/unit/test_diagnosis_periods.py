@@ -111,6 +111,19 @@ def test_laws_with_a_period_begin_at_what_stands_out_and_others_stay() -> None:
         assert {item.added[-1].name for item in begun} == {suspect.all[0].added[-1].name}
 
 
+def test_many_periods_and_many_starts_make_about_a_dozen_and_two_periods_at_least() -> None:
+    scene = rotor_bench.bench().scene
+    periods = _Given({TURN: (0.41, 0.43, 0.45, 0.46, 0.47, 0.48), TIME: ()})
+    for kind, starts, tried in ((hm.OilWhirlOnset, 3, 4), (hm.BallPassHarmonics, 1, 6)):
+        for suspect in suspects(Hypothesis(()), {}, candidates(scene, [kind])):
+            begun = begun_at(suspect.all, periods)  # type: ignore[arg-type]
+            name = next(iter(kind.periodic))
+            assert len({getattr(item.added[-1].effect, name) for item in begun}) == tried
+            assert len(begun) == tried * starts
+    many = tuple(Hypothesis((), (Added(hm.OilWhirlOnset(amplitude=1.0, onset=100.0 + k), "bearing_1", "whirl"),)) for k in range(9))
+    assert len(begun_at(many, periods)) == 2 * len(many)  # type: ignore[arg-type]
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Chatter(hm.Effect):
     """A user's own law, with a frequency that it asks to begin at."""
