@@ -109,6 +109,7 @@ class HarmonicDrive(Component):
         connection = draft.add_connection(
             name, factors, self._torque(), aliases=(f"{name}.mesh",), bodies={flange: node.name for flange, node in ends.items()}
         )
+        connection.gap = 2.0 * self.law.half_gap
         ring = ends["circular_spline"]
 
         def housing(moment: Moment) -> Value:

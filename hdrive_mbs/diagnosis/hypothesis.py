@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -38,6 +39,17 @@ class Added:
     def unknowns(self) -> tuple[Unknown, ...]:
         """What of it is searched, in the order of its fields."""
         return unknowns_of(self.effect, self.name)
+
+    @cached_property
+    def choices(self) -> int:
+        """Ways to choose what a search tries but does not vary: orders, sides."""
+        kind = type(self.effect)
+        searched = {item.name for item in dataclasses.fields(kind) if _is_searched(item.metadata.get("quantity"))}
+        return math.prod(len(values) for name, values in kind.starts.items() if name not in searched)
+
+
+def _is_searched(quantity: Quantity | None) -> bool:
+    return quantity is not None and quantity.typical is not None
 
 
 def unknowns_of(effect: Effect, name: str) -> tuple[Unknown, ...]:
@@ -173,8 +185,9 @@ class Hypothesis:
         return dataclasses.replace(changed, effects=(*changed.effects, *placed)) if placed else changed
 
     def log_prior(self, z: FloatArray) -> float:
-        """Logarithm of the prior density."""
-        return sum(unknown.log_prior(z[part].tolist()) for unknown, part in zip(self.unknowns, self.slices, strict=True))
+        """Logarithm of the prior density; of choices that an effect begins with, like an order, each is as likely."""
+        choices = sum(math.log(item.choices) for item in self.added)
+        return sum(unknown.log_prior(z[part].tolist()) for unknown, part in zip(self.unknowns, self.slices, strict=True)) - choices
 
     def prior_cost(self, z: FloatArray) -> float:
         """Of the normal priors that the fit uses: sum of precision z^2/2."""

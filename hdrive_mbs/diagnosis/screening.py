@@ -3,6 +3,10 @@
 An effect begins at the low end of its strengths, where it hardly changes anything; the differences to the nominal run
 are its columns beside the nominal Jacobian, and one joint step of all parameters gives the strengths that the records
 ask for.  That step is then run, so what counts is a true misfit and not a linear promise.
+
+A shape s of an effect of strength a shows in the records about as a f(s): its column at the start is a_0 df/ds, and the
+step that it gets is good for a_0.  Where the strength grows to g a_0 in the same step, the same change of the records takes
+1/g of it, so steps with shapes held back by g are run as well.
 """
 
 from __future__ import annotations
@@ -17,6 +21,7 @@ from hdrive_mbs.diagnosis.bounded import bounded_step
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis, start_of
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.unknowns import Strength, Vector
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -75,8 +80,25 @@ class Screen:
             own = found[number * each : (number + 1) * each]
             if own[0] is not None:
                 step = self._step(hypothesis, origin, *self._columns(own, steps[first:]))
-                proposed += [hypothesis.clipped(origin + part * step) for part in PARTS]
+                steps_ = [step, *self._held_back(hypothesis, origin, step)]
+                proposed += [hypothesis.clipped(origin + part * each_step) for each_step in steps_ for part in PARTS]
         yield from self._run(hypothesis, proposed)
+
+    def _held_back(self, hypothesis: Hypothesis, origin: FloatArray, step: FloatArray) -> Iterator[FloatArray]:
+        """The same step with all of the effect that was added last but its first strength divided by what that grows."""
+        at = self.null.hypothesis.size
+        for unknown in hypothesis.added[-1].unknowns if hypothesis.size > at else ():
+            part = slice(at, at + unknown.size)
+            at = part.stop
+            before = float(np.linalg.norm(origin[part]))
+            growth = float(np.linalg.norm(origin[part] + step[part])) / before if before > 0.0 else 0.0
+            if isinstance(unknown, Strength | Vector):
+                if growth > 1.0:
+                    others = np.ones(len(step))
+                    others[self.null.hypothesis.size :] = 1.0 / growth
+                    others[part] = 1.0
+                    yield step * others
+                return
 
     def _run(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> Iterator[Look]:
         for point, residuals in zip(points, self.simulator.residuals(hypothesis, points) if points else [], strict=True):

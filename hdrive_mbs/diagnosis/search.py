@@ -12,13 +12,14 @@ from hdrive_mbs.diagnosis.beginnings import begun_at
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import beyond, enough, picked, spread_out, worth
 from hdrive_mbs.diagnosis.fit import Fitted, fit
-from hdrive_mbs.diagnosis.ground import as_known, held, screen_from
+from hdrive_mbs.diagnosis.from_the_best import elsewhere, other_laws, restarts, unfinished
+from hdrive_mbs.diagnosis.ground import held, screen_from
 from hdrive_mbs.diagnosis.hops import settled
-from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.periods import Periods
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.simulator import Simulator
-from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect, simplest, suspects
+from hdrive_mbs.diagnosis.suspects import Label, Suspect, simplest, suspects
 from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, NEAR, Found, Task, cheapest, further, run_task, scored, those_that_ran
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
@@ -32,14 +33,12 @@ SECOND_LOOKS = 40
 """Of the labels that looked best from there, which are looked at again then."""
 COARSE = 3e-3
 """Relative change of the cost that ends the fit of the nominal model, whose misfit may have no explanation in it."""
-STEPS, ELSEWHERE = 3, 8
-"""Joint steps before the last choice, and of the best law at other places."""
+STEPS = 3
+"""Joint steps before the last choice."""
 HOPS = 3
 """Hops out of hollows for the nominal model, which everything else is held against."""
 ENOUGH = 1.1
 """Mean square that ends the search; see ``enough``."""
-AGAIN = 2
-"""Of the best laws that are fitted again from the data sheet's values."""
 
 
 @dataclass(frozen=True)
@@ -120,10 +119,10 @@ def search(
         more, _ = work.from_ground(held(simulator, base), base, [item for item in everything if item.label in likely or item.is_periodic])
         found = cheapest([*found, *more])
     if how.laws > 1:
-        moved = _elsewhere(found[0] if found else None, base, everything) + _restarts(found)
+        found = cheapest([*found, *work.fitted(other_laws(found, base, everything, enough(base, ENOUGH)), "trying other laws of the best")])
+        moved = elsewhere(found[0] if found else None, base, everything) + restarts(found, FAR)
         found = cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
-        if found and not found[0].fitted.converged:
-            found[:1] = work.fitted([(found[0].suspect, further(found[0].fitted))], "fitting the best")
+        found = cheapest([*found, *work.fitted(unfinished(found), "fitting the best")])
     final = sorted((scored(item, base) for item in found), key=lambda item: -item.log_odds)
     likely_first = tuple(dict.fromkeys(suspect.label for suspect, _ in first))
     return Search(base=base, found=tuple(final), looks=looks, likely=likely_first)
@@ -185,35 +184,6 @@ class _Work:
         answers = self.team.map(_look, screen, starts, partial(self.said, words))
         looks = [(suspect, look) for suspect, look in zip(asked, answers, strict=True) if look is not None]
         return sorted(looks, key=lambda pair: pair[1].cost)
-
-
-def _restarts(found: Sequence[Found]) -> list[tuple[Suspect, Task]]:
-    """The best laws again, with what was found for them and the data sheet's values for all else, where they leave something."""
-    tasks = []
-    for item in sorted(found, key=lambda item: item.fitted.cost)[:AGAIN]:
-        if item.fitted.chi_fit > FAR:
-            hypothesis, z = item.fitted.hypothesis.rescaled(item.fitted.z)
-            tasks.append((item.suspect, Task(hypothesis, as_known(hypothesis, z), None, CONVERGED, FINE)))
-    return tasks
-
-
-def _elsewhere(best: Found | None, base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:
-    """The law that did best with the values that it found, at the other places of its family."""
-    if best is None or best.suspect.law == PARAMETER:
-        return []
-    fitted = best.fitted
-    values = fitted.hypothesis.rescaled(fitted.z)[0].added[-1].effect
-    tasks = []
-    for suspect in everything:
-        if suspect.law != best.suspect.law or suspect.label == best.suspect.label:
-            continue
-        old = suspect.all[0]
-        added = (*old.added[:-1], Added(values, old.added[-1].at, old.added[-1].name))
-        hypothesis = Hypothesis(old.factors, added, old.loose)
-        z = hypothesis.start(fitted.hypothesis.nominal_part(fitted.z))
-        z[base.hypothesis.nominal_size : base.hypothesis.size] = base.z[base.hypothesis.nominal_size :]
-        tasks.append((suspect, Task(hypothesis, z, None, ELSEWHERE, FINE)))
-    return tasks
 
 
 def _look(screen: Screen, hypotheses: tuple[Hypothesis, ...]) -> Look | None:

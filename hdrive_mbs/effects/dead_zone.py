@@ -15,6 +15,11 @@ def dead_zone(twist: Value, width: float, rounding: float) -> Value:
     return twist + 0.5 * (np.sqrt((twist - half) ** 2 + rounding**2) - np.sqrt((twist + half) ** 2 + rounding**2))
 
 
+def beyond(twist: Value, gap: float) -> Value:
+    """The twist at which a law with a gap of its own, of that full width [rad], is as far beyond its edge as twist is from zero."""
+    return twist + 0.5 * gap * np.sign(twist)
+
+
 def contact_share(twist: Value, width: float, rounding: float) -> Value:
     """dd/dx: 0 in the middle of a wide gap, 1 far outside."""
     half = 0.5 * width

@@ -159,17 +159,25 @@ class LawEffect(Effect):
     def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:
         """The new torque(twist, rate) made from the old one."""
 
+    def changed_beyond(self, law: Callable[[Value, Value], Value], gap: float) -> Callable[[Value, Value], Value]:
+        """The same for a law that has no elastic torque in a gap of its own about zero, gap its full width [rad].
+
+        Override it where that makes a difference.
+        """
+        return self.changed(law)
+
     def apply(self, draft: Draft, place: str, name: str) -> None:
         connection = draft.connection(place, type(self).__name__)
-        old = connection.law
+        old, gap = connection.law, connection.gap
 
         def new(moment: Moment, twist: Value, rate: Value) -> Value:
-            return self.changed(lambda x, v: old(moment, x, v))(twist, rate)
+            return self.changed_beyond(lambda x, v: old(moment, x, v), gap)(twist, rate)
 
         def added(moment: Moment, twist: Value, rate: Value) -> Value:
             return new(moment, twist, rate) - old(moment, twist, rate)
 
         connection.law = new
+        connection.gap = 0.0
         if self.dissipative:
             connection.claim(name, added)
 

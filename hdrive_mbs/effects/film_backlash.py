@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hdrive_mbs.effects.dead_zone import contact_share, dead_zone
+from hdrive_mbs.effects.dead_zone import beyond, contact_share, dead_zone
 from hdrive_mbs.effects.effect import LawEffect
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
@@ -21,7 +21,8 @@ class FilmBacklash(LawEffect):
 
     with the law T(twist, rate) as it is without the effect.  The share s of contact rises from 0 to 1
     over the film e at each edge of the gap; with it the damping of the law comes in and that of the
-    film, c, goes out.  The elastic torque depends on x alone, so no energy is made.
+    film, c, goes out.  A law with a gap g of its own counts from its edges, and d has b + g for b.
+    The elastic torque depends on x alone, so no energy is made.
 
     Source: dead-zone model as in CouplingBacklash; that lubricated flanks meet on a film in place of an
     impact is in Theodossiades, Natsiavas, J. Sound and Vibration 229 (2000) 287; the rounding by a
@@ -40,12 +41,15 @@ class FilmBacklash(LawEffect):
     )
 
     def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:
+        return self.changed_beyond(law, 0.0)
+
+    def changed_beyond(self, law: Callable[[Value, Value], Value], gap: float) -> Callable[[Value, Value], Value]:
         if self.backlash == 0.0:
             return law
 
         def torque(twist: Value, rate: Value) -> Value:
-            inside = dead_zone(twist, self.backlash, self.film)
-            share = contact_share(twist, self.backlash, self.film)
+            inside = beyond(dead_zone(twist, gap + self.backlash, self.film), gap)
+            share = contact_share(twist, gap + self.backlash, self.film)
             elastic = law(inside, 0.0)
             return elastic + share * (law(inside, rate) - elastic) + (1.0 - share) * self.film_damping * rate
 

@@ -42,6 +42,12 @@ class HiddenMode(MemoryTorqueEffect):
     kind: ClassVar[str] = "hidden state"
     family: ClassVar[str] = "hidden_mode"
     dissipative: ClassVar[bool] = True
+    leads: ClassVar[bool] = True
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {
+        "natural_frequency": (30.0, 45.0, 70.0, 110.0, 165.0, 250.0, 380.0, 580.0, 1000.0),
+        "damping_ratio": (0.05,),  # wide: away from its resonance a sharp one does not show
+    }
+    decisive: ClassVar[tuple[str, ...]] = ("natural_frequency",)
     signature: ClassVar[str] = "a resonance with an antiresonance beside it that no part of the model has; rings after steps"
 
     def states(self) -> Mapping[str, str]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hdrive_mbs.effects.dead_zone import dead_zone
+from hdrive_mbs.effects.dead_zone import beyond, dead_zone
 from hdrive_mbs.effects.effect import LawEffect
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
@@ -16,11 +16,11 @@ from hdrive_mbs.quantities import parameter
 class LostMotion(LawEffect):
     """A dead zone in front of the law of a connection, in which its damping goes on.
 
-    tau = T(d(x), v),  d(x) = x + (sqrt((x - b/2)^2 + e^2) - sqrt((x + b/2)^2 + e^2))/2
+    tau = T(d + sign(d) g/2, v),  d(x) = x + (sqrt((x - h)^2 + e^2) - sqrt((x + h)^2 + e^2))/2,  h = (g + b)/2
 
-    with the law T(twist, rate) as it is without the effect.  For e = 0 the law counts from the edges
-    of the gap; e > 0 is a film or a soft flank that rounds the corners over about e.  A law with lost
-    motion of its own gets b more.  The elastic torque depends on x alone, so no energy is made.
+    with the law T(twist, rate) as it is without the effect, and its own gap g: lost motion of the gear, or 0.  For e = 0 the
+    law counts from the edges of the whole gap; e > 0 is a film or a soft flank that rounds them over about e.
+    The elastic torque depends on x alone, so no energy is made.
 
     Source: dead-zone model, Nordin, Gutman, Automatica 38 (2002) 1633, with the damping of seed F
     (2)-(3), which acts inside the gap too; rounding as of a hyperbola.  Leaves out friction inside the
@@ -33,10 +33,14 @@ class LostMotion(LawEffect):
     )
 
     family: ClassVar[str] = "backlash"
+    leads: ClassVar[bool] = True
     starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"width": (5e-5, 3e-4, 1.5e-3)}
     signature: ClassVar[str] = "no elastic torque over a range of twist; offset between both senses, a soft resonance at small torque"
 
     def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:
+        return self.changed_beyond(law, 0.0)
+
+    def changed_beyond(self, law: Callable[[Value, Value], Value], gap: float) -> Callable[[Value, Value], Value]:
         if self.width == 0.0:
             return law
-        return lambda twist, rate: law(dead_zone(twist, self.width, self.film), rate)
+        return lambda twist, rate: law(beyond(dead_zone(twist, gap + self.width, self.film), gap), rate)

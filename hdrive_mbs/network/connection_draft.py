@@ -21,7 +21,8 @@ class ConnectionDraft:
 
     ``law(moment, stretch, rate)`` is the constitutive law; ``parallel`` holds torques that act
     beside it; ``series`` is a spring in line with both; ``terms`` are kinematic errors that add to
-    the stretch; ``bodies`` names the body at each flange.
+    the stretch; ``bodies`` names the body at each flange.  ``gap`` is the full width about zero in
+    which the law has no elastic torque, 0 where it has none or nobody knows.
     """
 
     name: str
@@ -32,6 +33,7 @@ class ConnectionDraft:
     bodies: dict[str, str] = field(default_factory=dict)
     claims: list[Claim] = field(default_factory=list)
     series: Series | None = None
+    gap: float = 0.0
 
     def wrap(self, change: Callable[[Torque], Torque]) -> None:
         """Replace the law by ``change(law)``."""

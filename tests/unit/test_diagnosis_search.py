@@ -13,8 +13,9 @@ from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.choosing import beyond, enough, spread_out
 from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian, secant
+from hdrive_mbs.diagnosis.from_the_best import other_laws, unfinished
 from hdrive_mbs.diagnosis.gather import wants_second
-from hdrive_mbs.diagnosis.ground import held
+from hdrive_mbs.diagnosis.ground import held, screen_from
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
 from hdrive_mbs.diagnosis.pairs import alone
@@ -168,6 +169,53 @@ def test_a_family_gets_two_places_at_most_and_a_parameter_is_a_family_of_its_own
     assert [suspect.label for suspect, _ in spread_out(looks)] == [
         ("torque", "a"), ("torque", "b"), ("crack", "shaft"), ("rub", "a"), *parameters,
     ]  # fmt: skip
+
+
+def test_a_first_look_finds_a_hidden_mode_whose_frequency_no_start_has() -> None:
+    """A step made where the attached inertia is next to nothing is far too long for its frequency."""
+    mode = hm.HiddenMode(inertia=0.02, natural_frequency=310.0, damping_ratio=0.05)
+    missing = Simulator(BENCH.trials(records((mode, "load"))[0]), 2.5e-4, 4)
+    hypothesis = Hypothesis(factors_of(BENCH))
+    base = fit(missing, hypothesis, np.zeros(hypothesis.size), steps=25)
+    [suspect] = [item for item in suspects(hypothesis, {}, candidates(BENCH.scene, [hm.HiddenMode])) if item.label[1] == "load"]
+    look = screen_from(missing, base).look(suspect.first)
+    assert look is not None
+    assert look.cost < base.cost - 0.5 * (base.cost - 0.5 * np.count_nonzero(missing.fit))
+    assert look.hypothesis.added[0].effect.natural_frequency == pytest.approx(310.0, rel=0.25)  # type: ignore[attr-defined]
+
+
+def test_other_laws_of_the_best_label_begin_with_its_values(simulator: Simulator) -> None:
+    everything = suspects(
+        Hypothesis(factors_of(BENCH)), {}, candidates(BENCH.scene, [hm.DahlFriction, hm.PreslidingFriction, hm.CoulombStribeckFriction])
+    )
+    hypothesis = Hypothesis(factors_of(BENCH), (Added(hm.DahlFriction(coulomb=0.7, presliding=2e-3, exponent=1.6), "load", "drag"),))
+    fitted = dataclasses.replace(fit(simulator, hypothesis, hypothesis.start(), steps=0), chi_fit=2.0, converged=False)
+    dahl = Found(Suspect(("friction", "load"), "DahlFriction", (hypothesis,), (hypothesis,)), fitted)
+    base = left_with(simulator, cost=1.0, chi_fit=5.0)
+    asked = other_laws([dahl], base, everything, 1.1)
+    assert {suspect.label for suspect, _ in asked} == {("friction", "load")}
+    assert {suspect.law for suspect, _ in asked} == {"PreslidingFriction", "CoulombStribeckFriction"}
+    for suspect, task in asked:
+        values = {path.split(".")[1]: value for path, value in task.hypothesis.values(task.z).items() if "friction" in path}
+        assert values["coulomb"] == pytest.approx(0.7)
+        if suspect.law == "PreslidingFriction":
+            assert values["presliding"] == pytest.approx(2e-3)
+            assert values["exponent"] == pytest.approx(1.6)
+    assert other_laws([dahl], base, everything, 2.1) == []  # leaves nothing that is worth it
+    assert [item.hypothesis for _, item in unfinished([dahl])] == [hypothesis]
+    assert unfinished([dataclasses.replace(dahl, fitted=dataclasses.replace(fitted, converged=True))]) == []
+
+
+def test_what_a_search_chooses_among_counts_in_the_prior() -> None:
+    one = Added(hm.KinematicError(amplitude=1e-5, order=2.0), "gear", "error")
+    assert one.choices == 8  # four orders of either flange
+    assert Added(hm.ViscousDrag(coefficient=0.1), "load", "drag").choices == 1
+    assert Added(hm.LuGreFriction(coulomb=0.1, stiffness=30.0), "load", "drag").choices == 1  # its starts are searched on
+    free = Hypothesis((), (one,))
+    z = free.start()
+    assert free.log_prior(z) == pytest.approx(
+        sum(unknown.log_prior(z[part].tolist()) for unknown, part in zip(free.unknowns, free.slices, strict=True)) - math.log(8.0)
+    )
 
 
 def left_with(simulator: Simulator, *, cost: float, chi_fit: float) -> Fitted:

@@ -158,6 +158,16 @@ def test_lost_motion_adds_to_that_of_the_gear() -> None:
     np.testing.assert_allclose(changed.torque(moment, twists, 0.0), plain.torque(moment, twists, 0.0), atol=1e-9)
 
 
+@pytest.mark.parametrize("effect", [hm.LostMotion(width=2e-4, film=6e-5), hm.FilmBacklash(backlash=2e-4, film=6e-5)])
+def test_a_film_rounds_the_edges_of_the_whole_gap_of_a_gear(effect: hm.LawEffect) -> None:
+    law = hm.PiecewiseLinearStiffness(lost_motion=3e-4, stiffness_1=3e4, stiffness_2=6e4, stiffness_3=1e5, torque_1=20.0, torque_2=90.0)
+    changed = drive(law).with_effect(effect, at="gear").network().connection("gear")
+    moment = drive().network().moment(0.0, {}, {}, {})
+    twists = np.linspace(-4e-3, 4e-3, 201)
+    inside = dead_zone(twists, 5e-4, 6e-5)  # of the law without a gap
+    np.testing.assert_allclose(changed.torque(moment, twists, 0.0), law.replacing(lost_motion=0.0).torque(inside), atol=1e-9)
+
+
 def test_film_backlash_damps_by_the_film_inside_and_by_the_law_in_contact() -> None:
     torque = hm.FilmBacklash(backlash=0.02, film=1e-5, film_damping=0.1).changed(straight_law)
     # e/h = 1e-3: what is left of the other part is (e/h)^2/2

@@ -420,8 +420,14 @@ def test_one_sided_stiffness_leaves_the_other_side_alone() -> None:
 
     twists = np.array([-1e-3, -5e-4, 0.0, 5e-4, 1e-3])
     for side, sense in (("forward", 1.0), ("reverse", -1.0)):
-        changed = hm.OneSidedStiffness(change=0.2, onset_twist=1e-5, side=side).changed(law)(twists, 2.0)
-        np.testing.assert_allclose(changed, law(twists, 2.0) + np.where(sense * twists > 0.0, 0.2, 0.0) * 1e4 * twists, rtol=1e-12)
+        effect = hm.OneSidedStiffness(change=0.2, onset_twist=5e-4, side=side)
+        beyond = np.maximum(sense * twists, 0.0)
+        share = beyond / (beyond + 5e-4)  # half of it at the onset
+        np.testing.assert_allclose(effect.changed(law)(twists, 2.0), law(twists, 2.0) + 0.2 * share * 1e4 * twists, rtol=1e-12)
+        # beyond a gap of 6e-4 rad of the law itself: 2e-4 and 7e-4 rad are left of these twists
+        changed = effect.changed_beyond(law, 6e-4)(twists, 2.0)
+        left = np.maximum(sense * twists - 3e-4, 0.0)
+        np.testing.assert_allclose(changed, law(twists, 2.0) + 0.2 * left / (left + 5e-4) * 1e4 * twists, rtol=1e-12)
     with pytest.raises(ParameterError, match="must be 'forward' or 'reverse'"):
         hm.OneSidedStiffness(change=0.2, side="left")
 

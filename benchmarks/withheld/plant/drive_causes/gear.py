@@ -61,7 +61,7 @@ def _lost_motion(rng: np.random.Generator, at: str, specimen: Specimen, strength
 def _asymmetry(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
     """The reverse sense is stiffer or softer, from small twists on."""
     size = strength * log_uniform(rng, 0.02, 0.4) * rng.choice([-1.0, 1.0])
-    sizes = {"asymmetry": float(size), "asymmetry_twist": log_uniform(rng, 5e-5, 4e-4)}
+    sizes = {"asymmetry": float(size), "asymmetry_twist": log_uniform(rng, 5e-5, 4e-4), "asymmetry_power": rng.uniform(0.6, 2.0)}
     symbols = {"spring_" + name: value for name, value in sizes.items()}
     return specimen.part("spring", **sizes).told("stiffness_asymmetry", at, symbols=symbols, relative=float(size))
 

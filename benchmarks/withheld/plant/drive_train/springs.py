@@ -9,7 +9,7 @@ from benchmarks.withheld.plant.compiled import compiled
 
 
 class GearSpring(NamedTuple):
-    """T(twist) = B(ahead) - B(behind) (1 + a behind/(behind + x_a)), ahead = r(twist - g/2), behind = r(-twist - g/2)
+    """T(twist) = B(ahead) - B(behind) (1 + a (behind/(behind + x_a))^p), ahead = r(twist - g/2), behind = r(-twist - g/2)
 
     B(x) = K1 z + (K2 - K1) r(z - x1) + (K3 - K2) r(z - x2) + q K1 z exp(-(z / x_q)^2),  z = x^2/(x + x_e)
 
@@ -27,6 +27,7 @@ class GearSpring(NamedTuple):
     entry: float = 0.0  # rad, x_e: contact that builds up like a soft layer
     asymmetry: float = 0.0  # 1, a
     asymmetry_twist: float = 1.0  # rad, x_a
+    asymmetry_power: float = 1.0  # 1, p
     bulge: float = 0.0  # 1, q
     bulge_twist: float = 1.0  # rad, x_q
     modulation: float = 0.0  # 1, part of K1 that changes with the angle of the wave generator
@@ -69,7 +70,7 @@ def spring_torque(twist, s):
     behind = ramp(-twist - s.half_gap, s.edge)
     back = branch(behind, s)
     if s.asymmetry != 0.0:
-        back *= 1.0 + s.asymmetry * behind / (behind + s.asymmetry_twist)
+        back *= 1.0 + s.asymmetry * (behind / (behind + s.asymmetry_twist)) ** s.asymmetry_power
     return branch(ahead, s) - back
 
 

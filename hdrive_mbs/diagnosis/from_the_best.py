@@ -1,0 +1,104 @@
+"""What is tried from the best that a search has found: its other laws, its other places, and the data sheet's values again."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from hdrive_mbs.diagnosis.choosing import beyond
+from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.ground import as_known
+from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect
+from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, Found, Task, further
+from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import ParameterError
+
+STEPS = 8
+"""Joint steps of another law or place."""
+STARTS = 2
+"""Of another law of the best label."""
+RIVALS = 2
+"""Labels whose best laws are fitted to the end."""
+AGAIN = 2
+"""Of the best laws that are fitted again from the data sheet's values."""
+
+
+def restarts(found: Sequence[Found], least: float) -> list[tuple[Suspect, Task]]:
+    """The best laws again, with what was found for them and the data sheet's values for all else, where they leave something."""
+    tasks = []
+    for item in sorted(found, key=lambda item: item.fitted.cost)[:AGAIN]:
+        if item.fitted.chi_fit > least:
+            hypothesis, z = item.fitted.hypothesis.rescaled(item.fitted.z)
+            tasks.append((item.suspect, Task(hypothesis, as_known(hypothesis, z), None, CONVERGED, FINE)))
+    return tasks
+
+
+def unfinished(found: Sequence[Found]) -> list[tuple[Suspect, Task]]:
+    """The best laws of the first two labels that may still get better: a choice between places is one between fits to the end."""
+    first: dict[Label, Found] = {}
+    for item in found:
+        first.setdefault(item.suspect.label, item)
+    best = list(first.values())[:RIVALS]
+    return [(item.suspect, further(item.fitted)) for item in best if not item.fitted.converged and not beyond(item.fitted, best[0].fitted)]
+
+
+def other_laws(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect], least: float) -> list[tuple[Suspect, Task]]:
+    """Laws of the best label that were not fitted yet, where the best leaves something: with its values in fields of the same name.
+
+    Laws of one family call the same thing by the same name.
+    """
+    if not found or found[0].suspect.law == PARAMETER or found[0].fitted.chi_fit < least:
+        return []
+    best, known = found[0].fitted, {(item.suspect.label, item.suspect.law) for item in found}
+    values = best.hypothesis.rescaled(best.z)[0].added[-1].effect
+    tasks = []
+    for suspect in everything:
+        if suspect.label != found[0].suspect.label or suspect.law == PARAMETER or (suspect.label, suspect.law) in known:
+            continue
+        made: dict[Effect, Hypothesis] = {}
+        for start in suspect.all:
+            *before, last = start.added
+            effect = _with_values(last.effect, values)
+            made.setdefault(effect, Hypothesis(start.factors, (*before, Added(effect, last.at, last.name)), start.loose))
+        tasks += [(suspect, _from(best, base, start)) for start in list(made.values())[:STARTS]]
+    return tasks
+
+
+def _with_values(effect: Effect, other: Effect) -> Effect:
+    """An effect with the values of another in searched fields of the same name; as it is where they do not go together."""
+    theirs = {name: value for name, value, metadata in other.fields() if _is_searched(metadata)}
+    try:
+        return effect.replacing(
+            **{name: theirs[name] for name, _, metadata in effect.fields() if _is_searched(metadata) and name in theirs}
+        )
+    except ParameterError:
+        return effect
+
+
+def _is_searched(metadata: Mapping[str, Any]) -> bool:
+    quantity = metadata.get("quantity")
+    return quantity is not None and quantity.typical is not None
+
+
+def elsewhere(best: Found | None, base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:
+    """The law that did best with the values that it found, at the other places of its family."""
+    if best is None or best.suspect.law == PARAMETER:
+        return []
+    fitted = best.fitted
+    values = fitted.hypothesis.rescaled(fitted.z)[0].added[-1].effect
+    tasks = []
+    for suspect in everything:
+        if suspect.law != best.suspect.law or suspect.label == best.suspect.label:
+            continue
+        old = suspect.all[0]
+        added = (*old.added[:-1], Added(values, old.added[-1].at, old.added[-1].name))
+        tasks.append((suspect, _from(fitted, base, Hypothesis(old.factors, added, old.loose))))
+    return tasks
+
+
+def _from(fitted: Fitted, base: Fitted, hypothesis: Hypothesis) -> Task:
+    """A few steps of a hypothesis from the parameters of another one's fit and the causes of the base."""
+    z = hypothesis.start(fitted.hypothesis.nominal_part(fitted.z))
+    z[base.hypothesis.nominal_size : base.hypothesis.size] = base.z[base.hypothesis.nominal_size :]
+    return Task(hypothesis, z, None, STEPS, FINE)
