@@ -108,10 +108,6 @@ class Likelihood:
     def __init__(self, given: Sequence[Spectra], at: FloatArray, precision: FloatArray) -> None:
         self.given, self.at, self.precision = tuple(given), at, precision
         self._energies: dict[int, tuple[FloatArray, FloatArray]] = {}
-        self._real = []
-        for item in given:
-            flat = item.values.reshape(-1, item.values.shape[-1])
-            self._real.append((flat.real.copy(), flat.imag.copy()))
 
     @property
     def numbers(self) -> int:
@@ -206,10 +202,11 @@ class Likelihood:
         """J^T W J and J^T W r."""
         size = len(self.at) + 1
         total = np.zeros((size, size))
-        for item, (real, imaginary), fit, own in zip(self.given, self._real, fits, seen, strict=True):
+        for item, fit, own in zip(self.given, fits, seen, strict=True):
+            flat = item.values.reshape(-1, item.values.shape[-1])
             weight = np.sqrt(np.repeat(1.0 / fit.scale, item.widths, axis=1))
             each = np.repeat(weight.ravel(), item.values.shape[2])[:, None]
-            for part in (real, imaginary):
+            for part in (flat.real, flat.imag):
                 weighted = part * each
                 total += weighted.T @ weighted
             if own is not None and fit.kept is not None:

@@ -84,7 +84,8 @@ def motion_of(simulator: Simulator, number: int, hypothesis: Hypothesis, z: Floa
     if isinstance(run, SimulationError):
         raise run
     fold = _fold(trial)
-    return Motion(trial, network, {channel.name: run.values[channel.name][::fold] for channel in watched}, _columns(trial, run))
+    values = {channel.name: run.values[channel.name][::fold].copy() for channel in watched}  # views would keep the whole run
+    return Motion(trial, network, values, _columns(trial, run))
 
 
 def columns_of(
@@ -134,4 +135,4 @@ def _fold(trial: Trial) -> int:
 
 def _columns(trial: Trial, run: CompiledRun) -> dict[str, FloatArray]:
     fold = _fold(trial)
-    return {c: run.values[item.channel][1 if item.late else 0 :: fold] for c, item in trial.measured.items()}
+    return {c: run.values[item.channel][1 if item.late else 0 :: fold].copy() for c, item in trial.measured.items()}
