@@ -1,16 +1,24 @@
-"""Starts of laws with a period, moved to the periods that stand out in what is left."""
+"""Starts of laws with a period, moved to the periods that stand out in what is left, and to others close by.
+
+A peak is not quite the period: while the speed passes a resonance the phase of the response turns, which moves the peak by
+parts of what the records can tell apart, and by less than that a law is out of step at the end of a record.
+"""
 
 from __future__ import annotations
 
 import dataclasses
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.periods import Periods
+from hdrive_mbs.errors import ParameterError
 
 MANY, FEW = 12, 2
 """Starts of a law that are made, about, and periods that are tried at least."""
+
+ASIDE = (-0.75, -0.5, -0.25, 0.25, 0.5, 0.75)
+"""Of the width that the longest record can tell apart: how far from a peak is tried besides."""
 
 
 def is_periodic(hypothesis: Hypothesis) -> bool:
@@ -34,4 +42,24 @@ def begun_at(starts: Sequence[Hypothesis], periods: Periods) -> tuple[Hypothesis
             *before, last = start.added
             added = Added(effect.replacing(**values), last.at, last.name)
             made.append(Hypothesis(start.factors, (*before, added), start.loose))
+    return tuple(made)
+
+
+def widths_of(hypothesis: Hypothesis, periods: Periods) -> dict[str, float]:
+    """What the records can tell apart of each period of the effect that was added last."""
+    return {name: periods.width(over) for name, over in type(hypothesis.added[-1].effect).periodic.items()}
+
+
+def beside(start: Hypothesis, widths: Mapping[str, float]) -> tuple[Hypothesis, ...]:
+    """A start with each period of the effect that was added last moved by parts of these widths; as far as it may go."""
+    *before, last = start.added
+    made = []
+    for name, width in widths.items():
+        value = float(getattr(last.effect, name))
+        for part in ASIDE:
+            try:
+                effect = last.effect.replacing(**{name: value + part * width})
+            except ParameterError:
+                continue
+            made.append(Hypothesis(start.factors, (*before, Added(effect, last.at, last.name)), start.loose))
     return tuple(made)

@@ -133,7 +133,8 @@ def _options(kind: type[Effect]) -> dict[str, tuple[Any, ...]]:
     """Start values of its shapes and choices, by field."""
     chosen: dict[str, tuple[Any, ...]] = {}
     phases = {phase for _, phase in kind.vectors}
-    count = SHAPES.get(sum(_is_shape(name, item, kind) for name, item in _quantities(kind).items()), 1)
+    shapes = [name for name, item in _quantities(kind).items() if _is_shape(name, item, kind) and name not in kind.periodic]
+    count = SHAPES.get(len(shapes), 1)
     for name, quantity in _quantities(kind).items():
         if name in kind.starts:
             chosen[name] = tuple(kind.starts[name])
@@ -144,7 +145,8 @@ def _options(kind: type[Effect]) -> dict[str, tuple[Any, ...]]:
             elif quantity.low == 0.0:
                 chosen[name] = (low,)
             else:
-                ends = [(k + 0.5) / count for k in range(count)]
+                number = 1 if name in kind.periodic else count  # begins elsewhere in the end: beginnings.py
+                ends = [(k + 0.5) / number for k in range(number)]
                 chosen[name] = tuple(low * (high / low) ** end for end in ends)
     for name, values in kind.starts.items():
         chosen.setdefault(name, tuple(values))

@@ -57,7 +57,7 @@ class Periods:
         if over == TIME:  # above half the sample rate a frequency looks like another one
             high = min(high, float(np.pi / max(trial.every * self._simulator.every for trial in self._simulator.trials)))
         rows = list(self._rows(over))
-        longest = max((float(np.ptp(at)) for at, _, parts in rows if parts), default=0.0)
+        longest = _longest(rows)
         if longest * (high - low) < 4.0 * np.pi:
             return ()
         stretch = max(float(np.ptp(at[part])) for at, _, parts in rows for part in parts)
@@ -69,6 +69,11 @@ class Periods:
         periods = np.asarray(2.0 * np.pi * np.arange(count // 2) / (count * width))
         inside = (periods >= low) & (periods <= high)
         return _peaks(periods[inside], power[inside], 2.0 * np.pi / longest, 2.0 * np.pi / stretch)
+
+    def width(self, over: str) -> float:
+        """What the longest record can just tell apart, in periods per radian of ``over``; infinite where nothing was excited."""
+        longest = _longest(list(self._rows(over)))
+        return 2.0 * float(np.pi) / longest if longest > 0.0 else float(np.inf)
 
     def _rows(self, over: str) -> Iterator[tuple[FloatArray, FloatArray, list[slice]]]:
         """Of every trial: where its samples are, weighted residuals by column, (columns, samples), and stretches that a fit sees."""
@@ -88,6 +93,11 @@ class Periods:
         fitted, simulator = self._fitted, self._simulator
         motions = (motion_of(simulator, k, fitted.hypothesis, fitted.z) for k in range(len(simulator.trials)))
         return [reference_shaft(motion)[1][:: simulator.every] for motion in motions]
+
+
+def _longest(rows: Sequence[tuple[FloatArray, FloatArray, list[slice]]]) -> float:
+    """How far the longest record goes of which a fit sees something."""
+    return max((float(np.ptp(at)) for at, _, parts in rows if parts), default=0.0)
 
 
 def _stretches(seen: Mask) -> list[slice]:

@@ -31,12 +31,16 @@ PARTS = (1.0, 0.4, 0.1)
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """What one start of a hypothesis gave: its best point and the cost there, residuals included."""
+    """What one start of a hypothesis gave: its best point and the cost there, residuals included.
+
+    start : the hypothesis with the start values that led there
+    """
 
     hypothesis: Hypothesis
     z: FloatArray
     cost: float
     residuals: FloatArray
+    start: Hypothesis
 
 
 class Screen:
@@ -58,7 +62,7 @@ class Screen:
         if best is None:
             return None
         hypothesis, z = best.hypothesis.rescaled(best.z)
-        return Look(hypothesis, z, best.cost, best.residuals)
+        return Look(hypothesis, z, best.cost, best.residuals, best.start)
 
     def _looks(self, starts: Sequence[Hypothesis]) -> Iterator[Look]:
         """Looks from starts that differ in searched values alone: all of them are run side by side."""
@@ -75,14 +79,17 @@ class Screen:
                 points.append(moved)
         each = 1 + hypothesis.size - first
         found = self.simulator.residuals(hypothesis, points) if each > 1 else [self.null.residuals] * len(points)
-        proposed = []
+        proposed: list[FloatArray] = []
+        begun: list[Hypothesis] = []
         for number, origin in enumerate(origins):
             own = found[number * each : (number + 1) * each]
             if own[0] is not None:
                 step = self._step(hypothesis, origin, *self._columns(own, steps[first:]))
                 steps_ = [step, *self._held_back(hypothesis, origin, step)]
-                proposed += [hypothesis.clipped(origin + part * each_step) for each_step in steps_ for part in PARTS]
-        yield from self._run(hypothesis, proposed)
+                points = [hypothesis.clipped(origin + part * each_step) for each_step in steps_ for part in PARTS]
+                proposed += points
+                begun += [starts[number]] * len(points)
+        yield from self._run(hypothesis, proposed, begun)
 
     def _held_back(self, hypothesis: Hypothesis, origin: FloatArray, step: FloatArray) -> Iterator[FloatArray]:
         """The same step with all of the effect that was added last but its first strength divided by what that grows."""
@@ -100,11 +107,12 @@ class Screen:
                     yield step * others
                 return
 
-    def _run(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> Iterator[Look]:
-        for point, residuals in zip(points, self.simulator.residuals(hypothesis, points) if points else [], strict=True):
+    def _run(self, hypothesis: Hypothesis, points: Sequence[FloatArray], begun: Sequence[Hypothesis]) -> Iterator[Look]:
+        found = self.simulator.residuals(hypothesis, points) if points else []
+        for point, start, residuals in zip(points, begun, found, strict=True):
             if residuals is not None:
                 misfit = self.simulator.blocks.cost(residuals[self.simulator.fit])
-                yield Look(hypothesis, point, misfit + hypothesis.prior_cost(point), residuals)
+                yield Look(hypothesis, point, misfit + hypothesis.prior_cost(point), residuals, start)
 
     def _columns(self, found: Sequence[FloatArray | None], steps: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Fitted residuals at a start, and the Jacobian's columns of everything that the base has not."""

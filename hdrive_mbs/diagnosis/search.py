@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from hdrive_mbs.diagnosis.beginnings import begun_at
+from hdrive_mbs.diagnosis.beginnings import begun_at, beside, widths_of
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import beyond, enough, picked, spread_out, worth
 from hdrive_mbs.diagnosis.fit import Fitted, fit
@@ -167,10 +167,7 @@ class _Work:
     def _begun(self, everything: Sequence[Suspect], model: Fitted) -> list[Suspect]:
         """Laws with a period begin at those that stand out in what the model leaves."""
         periods = Periods(self.simulator, model)
-        return [
-            replace(item, first=begun_at(item.first, periods), all=begun_at(item.all, periods)) if item.is_periodic else item
-            for item in everything
-        ]
+        return [_begun(item, periods) if item.is_periodic else item for item in everything]
 
     def fitted(self, asked: Sequence[tuple[Suspect, Task]], words: str) -> list[Found]:
         """Suspects with their tasks done; those that cannot be run from where they begin are left out."""
@@ -181,10 +178,22 @@ class _Work:
         self, screen: Screen, asked: Sequence[Suspect], starts: Sequence[tuple[Hypothesis, ...]], words: str
     ) -> list[tuple[Suspect, Look]]:
         """Looks at suspects, cheapest misfit first; those that cannot be run are left out."""
-        answers = self.team.map(_look, screen, starts, partial(self.said, words))
+        questions = [(some, item.widths) for item, some in zip(asked, starts, strict=True)]
+        answers = self.team.map(_look, screen, questions, partial(self.said, words))
         looks = [(suspect, look) for suspect, look in zip(asked, answers, strict=True) if look is not None]
         return sorted(looks, key=lambda pair: pair[1].cost)
 
 
-def _look(screen: Screen, hypotheses: tuple[Hypothesis, ...]) -> Look | None:
-    return screen.look(hypotheses)
+def _begun(item: Suspect, periods: Periods) -> Suspect:
+    widths = widths_of(item.first[0], periods)
+    return replace(item, first=begun_at(item.first, periods), all=begun_at(item.all, periods), widths=widths)
+
+
+def _look(screen: Screen, asked: tuple[tuple[Hypothesis, ...], Mapping[str, float]]) -> Look | None:
+    """The best of several starts; of a law with periods also beside those of the best."""
+    starts, widths = asked
+    found = screen.look(starts)
+    if found is None or not widths:
+        return found
+    closer = screen.look(beside(found.start, widths))
+    return closer if closer is not None and closer.cost < found.cost else found

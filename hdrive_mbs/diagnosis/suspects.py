@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from hdrive_mbs.diagnosis.beginnings import is_periodic
 from hdrive_mbs.diagnosis.candidates import Candidate
@@ -22,12 +22,14 @@ class Suspect:
     """Something that may explain the gap: a label and the hypotheses that stand for it, from several starts.
 
     first : those for a first look;  all : every start
+    widths : of a law with periods: what the records can tell apart of each
     """
 
     label: Label
     law: str
     first: tuple[Hypothesis, ...]
     all: tuple[Hypothesis, ...]
+    widths: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def is_periodic(self) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.diagnosis.beginnings import begun_at
+from hdrive_mbs.diagnosis.beginnings import ASIDE, begun_at, beside, widths_of
 from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
@@ -122,6 +122,24 @@ def test_many_periods_and_many_starts_make_about_a_dozen_and_two_periods_at_leas
             assert len(begun) == tried * starts
     many = tuple(Hypothesis((), (Added(hm.OilWhirlOnset(amplitude=1.0, onset=100.0 + k), "bearing_1", "whirl"),)) for k in range(9))
     assert len(begun_at(many, periods)) == 2 * len(many)  # type: ignore[arg-type]
+
+
+def test_a_law_whose_direction_is_tried_keeps_all_of_its_directions() -> None:
+    """Periods are not among the starts that are thinned out: they come from the records."""
+    for one in candidates(rotor_bench.bench().scene, [hm.InnerRacePass]):
+        assert {item.effect.direction for item in one.starts} == set(hm.InnerRacePass.starts["direction"])  # type: ignore[attr-defined]
+        assert len({item.effect.order for item in one.starts}) == 1  # type: ignore[attr-defined]
+
+
+def test_beside_a_period_lie_others_by_parts_of_what_the_records_tell_apart(simulator: Simulator, fitted: Fitted) -> None:
+    start = Hypothesis((), (Added(hm.BallPass(amplitude=1.0, order=3.1), "bearing_1", "pass"),))
+    widths = widths_of(start, Periods(simulator, fitted))
+    turns = turned(simulator, fitted) / (2.0 * np.pi)
+    assert widths == {"order": pytest.approx(1.0 / turns)}
+    orders = [item.added[-1].effect.order for item in beside(start, widths)]  # type: ignore[attr-defined]
+    np.testing.assert_allclose(orders, 3.1 + np.array(ASIDE) / turns)
+    assert len(beside(start, {"order": 100.0})) == 3  # those below zero are left out
+    assert beside(start, {"order": np.inf}) == ()
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)

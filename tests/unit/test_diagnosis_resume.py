@@ -166,7 +166,7 @@ def test_a_damaged_answer_is_worked_out_again(copied: Path, whole: Diagnosis) ->
 def test_an_answer_comes_back_from_its_file_to_the_last_bit(tmp_path: Path) -> None:
     factor = Factor("motor.inertia", "J", {"motor.inertia": 1.2e-3}, 0.03)
     hypothesis = Hypothesis((factor,), (Added(ViscousDrag(coefficient=0.1 + 0.2), "load", "viscous_drag"),), {"J": 10.0})
-    look = Look(hypothesis, np.array([0.1, np.pi]), float("inf"), np.array([1e-300, np.nan]))
+    look = Look(hypothesis, np.array([0.1, np.pi]), float("inf"), np.array([1e-300, np.nan]), hypothesis)
     journal = Journal(tmp_path, {})
     journal.write("key", look)
     answer = journal.read("key", (hypothesis,))

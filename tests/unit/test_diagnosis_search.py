@@ -161,7 +161,7 @@ def test_a_family_is_led_by_the_law_that_says_so() -> None:
 
 def test_a_family_gets_two_places_at_most_and_a_parameter_is_a_family_of_its_own() -> None:
     empty = Hypothesis(())
-    look = Look(empty, np.zeros(0), 0.0, np.zeros(0))
+    look = Look(empty, np.zeros(0), 0.0, np.zeros(0), empty)
     labels = [("torque", "a"), ("torque", "b"), ("torque", "c"), ("crack", "shaft"), ("torque", "d"), ("rub", "a")]
     parameters = [("parameter", name) for name in ("mass", "stiffness", "damping")]
     looks = [(Suspect(label, "Law", (empty,), (empty,)), look) for label in labels]
