@@ -30,7 +30,7 @@ SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 SINGLES, LAST, LONG = 3, 4, 20
 """Labels that are fitted on all samples, and steps that this may take for them and for the best."""
 EXACT = 1e-6
-"""Relative change of the cost that ends these last fits."""
+"""Relative change of the cost that ends these last fits where little is left."""
 SECOND_LOOKS = 60
 """Of the labels that looked best alone, at which a second cause is looked for."""
 JOINED = 3
@@ -116,7 +116,8 @@ def gather(
     leader = min((*serious, *double), key=lambda item: item.fitted.cost, default=None)
     for item in (*serious, *double):
         far = item is leader or near
-        tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, LONG if far else LAST, EXACT, hops=HOPS if item is leader else 0))
+        sharp = EXACT if item.fitted.chi_fit < NEAR else FINE
+        tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, LONG if far else LAST, sharp, hops=HOPS if item is leader else 0))
     nominal, refitted, *others = team.map(run_task, fine, tasks, partial(said, "all samples"))
     if nominal is None or refitted is None:
         raise AnalysisError("The nominal scene cannot be simulated through all of the records; look at its start values and inputs.")

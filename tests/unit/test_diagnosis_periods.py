@@ -94,7 +94,7 @@ class _Given:
 
 def test_laws_with_a_period_begin_at_what_stands_out_and_others_stay() -> None:
     scene = rotor_bench.bench().scene
-    kinds = [hm.OilWhirlOnset, hm.BallPassHarmonics, hm.GroundVibration, hm.ExternalShock]
+    kinds: list[type[hm.Effect]] = [hm.OilWhirlOnset, hm.BallPassHarmonics, hm.GroundVibration, hm.ExternalShock]
     for suspect in suspects(Hypothesis(()), {}, candidates(scene, kinds)):
         periods = _Given({TURN: (0.43, 0.47), TIME: ()})
         begun = begun_at(suspect.all, periods)  # type: ignore[arg-type]
