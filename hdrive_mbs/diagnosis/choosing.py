@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.screening import Look
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect
-from hdrive_mbs.diagnosis.tasks import NEAR
+from hdrive_mbs.diagnosis.tasks import is_hopeless
 
 PLACES = 2
 """Of one family that are looked at closer; what comes out best is tried at the others in the end."""
@@ -15,8 +15,6 @@ SHARE = 0.08
 """Of the best one's gain: what gains less is followed up only to fill the least number."""
 SMALL = 0.03
 """Of the logarithm of the nominal model's mean square: left by a law that is nearly right beside a cause that is strong."""
-HOPELESS = 10.0
-"""Times the mean square of a law that is near, above which others are not fitted to the end."""
 
 
 def worth(before: float, costs: Sequence[float], limits: tuple[int, int]) -> int:
@@ -56,7 +54,7 @@ def picked(looks: Sequence[tuple[Suspect, Look]], *, laws: int) -> list[tuple[Su
 
 def beyond(fitted: Fitted, leading: Fitted) -> bool:
     """Whether a law is so far from the records that it will not catch up with one that is near."""
-    return leading.chi_fit < NEAR and fitted.chi_fit > HOPELESS * leading.chi_fit
+    return is_hopeless(fitted.chi_fit, leading.chi_fit)
 
 
 def enough(base: Fitted, least: float) -> float:

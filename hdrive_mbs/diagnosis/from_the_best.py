@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from hdrive_mbs.diagnosis.choosing import beyond
@@ -93,7 +94,8 @@ def elsewhere(best: Found | None, base: Fitted, everything: Sequence[Suspect]) -
             continue
         old = suspect.all[0]
         added = (*old.added[:-1], Added(values, old.added[-1].at, old.added[-1].name))
-        tasks.append((suspect, _from(fitted, base, Hypothesis(old.factors, added, old.loose))))
+        task = _from(fitted, base, Hypothesis(old.factors, added, old.loose))
+        tasks.append((suspect, replace(task, leading=fitted.chi_fit)))
     return tasks
 
 

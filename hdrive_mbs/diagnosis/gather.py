@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from hdrive_mbs.diagnosis.candidates import Candidate
-from hdrive_mbs.diagnosis.choosing import enough
+from hdrive_mbs.diagnosis.choosing import beyond, enough
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.pairs import alone, joined, swapped
 from hdrive_mbs.diagnosis.search import HOPS, Depth, Report, Search, fit_nominal, search
@@ -117,7 +117,8 @@ def gather(
     for item in (*serious, *double):
         far = item is leader or near
         sharp = EXACT if item.fitted.chi_fit < NEAR else FINE
-        tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, LONG if far else LAST, sharp, hops=HOPS if item is leader else 0))
+        steps = LONG if far else 1 if leader is not None and beyond(item.fitted, leader.fitted) else LAST
+        tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, steps, sharp, hops=HOPS if item is leader else 0))
     nominal, refitted, *others = team.map(run_task, fine, tasks, partial(said, "all samples"))
     if nominal is None or refitted is None:
         raise AnalysisError("The nominal scene cannot be simulated through all of the records; look at its start values and inputs.")

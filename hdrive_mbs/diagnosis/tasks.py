@@ -18,11 +18,16 @@ from hdrive_mbs.errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
 
+FIRST = 2
+"""Steps after which a fit against another one is given up where it is hopeless."""
+
 FINE, CONVERGED = 1e-4, 25
 """Relative change of the cost that ends a fit, and steps that one to the end may take."""
 NEAR = 3.0
 """Mean square up to which hops out of hollows help, and up to which it is worth a fit of the nominal model as sharp as that of the
 causes: farther away they lead nowhere."""
+HOPELESS = 10.0
+"""Times the mean square of a law that is near, above which others are not fitted to the end."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +41,10 @@ class Found:
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """A fit to do: where it begins, how far it may go, and hops at its end.  ``done`` is set where it is fitted already."""
+    """A fit to do: where it begins, how far it may go, and hops at its end.  ``done`` is set where it is fitted already.
+
+    leading : mean square of what it is tried against, if anything: given up after the first steps where it is hopeless beside that
+    """
 
     hypothesis: Hypothesis
     z: FloatArray
@@ -45,15 +53,24 @@ class Task:
     share: float
     done: Fitted | None = None
     hops: int = 0
+    leading: float | None = None
 
 
 def run_task(simulator: Simulator, task: Task) -> Fitted | None:
     """Do it; None where it cannot be run from where it begins."""
+    first = task.steps if task.leading is None else min(FIRST, task.steps)
     try:
-        fitted = task.done or fit(simulator, task.hypothesis, task.z, steps=task.steps, share=task.share, begin=task.residuals)
+        fitted = task.done or fit(simulator, task.hypothesis, task.z, steps=first, share=task.share, begin=task.residuals)
+        if task.leading is not None and not fitted.converged and not is_hopeless(fitted.chi_fit, task.leading):
+            fitted = fit(simulator, task.hypothesis, fitted.z, steps=task.steps - first, share=task.share, begin=fitted.residuals)
     except AnalysisError:
         return None
     return settled(simulator, fitted, task.hops) if task.hops and fitted.chi_fit < NEAR else fitted
+
+
+def is_hopeless(left: float, leading: float) -> bool:
+    """Whether a mean square is so far above that of a law which is near that it will not come down to it."""
+    return leading < NEAR and left > HOPELESS * leading
 
 
 def further(fitted: Fitted, steps: int = CONVERGED, share: float = FINE, hops: int = 0) -> Task:

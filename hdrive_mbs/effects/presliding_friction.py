@@ -59,15 +59,16 @@ class PreslidingFriction(MemoryTorqueEffect):
     def state_rate(self, name: str, time: Value, angle: Value, speed: Value, state: Mapping[str, Value]) -> Value:
         left = 1.0 - state[name] * np.sign(speed) / self.sliding_torque(speed)
         share = self._share(speed, state[name])
-        return share * self.coulomb / self.presliding * speed * np.abs(left) ** self.exponent * np.sign(left)
+        return share * self.coulomb / self.presliding * speed * left * self._secant(left)
 
     def _share(self, speed: Value, torque: Value) -> Value:
         sliding = self.sliding_torque(speed)
-        slope = 1.0 if self.exponent == 1.0 else self._slope(1.0 - torque * np.sign(speed) / sliding)
+        slope = self.exponent * self._secant(1.0 - torque * np.sign(speed) / sliding)
         return followed_share(slope * np.abs(speed) * (self.coulomb / self.presliding) / sliding, self.fastest_rate)
 
-    def _slope(self, left: Value) -> Value:
-        return self.exponent * np.maximum(np.abs(left), 1e-9) ** (self.exponent - 1.0)
+    def _secant(self, left: Value) -> Value:
+        """|left|^(n-1), which times left is D and times n the slope of D."""
+        return 1.0 if self.exponent == 1.0 else np.maximum(np.abs(left), 1e-9) ** (self.exponent - 1.0)
 
     def torque(self, time: Value, angle: Value, speed: Value, state: Mapping[str, Value]) -> Value:
         return -sum(mixed(self._share(speed, state[name]), state[name], self.sliding_torque(speed), speed) for name in self.states())
