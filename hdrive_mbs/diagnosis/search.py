@@ -105,7 +105,8 @@ def search(
     One simple law stands for each label in the first look.  The best labels are looked at with all laws and starts,
     the best of those get a few joint steps with their own Jacobians, and the best of these are fitted to the end.
     Where all of them leave something, the same is done with the likeliest, the parameters held near the values of the data sheet.
-    What came out best is then tried at all other places where it may sit, from the values found.
+    What came out best is then tried with the other laws of its family and at all other places where it may sit, from the values
+    found; in a shallow search only where it leaves much.
 
     among : labels that are looked at besides laws with a period, which show less beside something stronger; all if not given
     """
@@ -118,9 +119,9 @@ def search(
         likely = {suspect.label for suspect, _ in first[:SECOND_LOOKS]}
         more, _ = work.from_ground(held(simulator, base), base, [item for item in everything if item.label in likely or item.is_periodic])
         found = cheapest([*found, *more])
-    if how.laws > 1:
+    if how.laws > 1 or (found and found[0].fitted.chi_fit > FAR):
         found = cheapest([*found, *work.fitted(other_laws(found, base, everything, enough(base, ENOUGH)), "trying other laws of the best")])
-        moved = elsewhere(found[0] if found else None, base, everything) + restarts(found, FAR)
+        moved = elsewhere(found[0] if found else None, base, everything) + (restarts(found, FAR) if how.laws > 1 else [])
         found = cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
         found = cheapest([*found, *work.fitted(unfinished(found), "fitting the best")])
     final = sorted((scored(item, base) for item in found), key=lambda item: -item.log_odds)
