@@ -23,7 +23,7 @@ from hdrive_mbs.diagnosis.screening import Look
 from hdrive_mbs.diagnosis.search import ENOUGH
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, simplest, suspects
-from hdrive_mbs.diagnosis.tasks import Found, Task, run_task
+from hdrive_mbs.diagnosis.tasks import FIRST, Found, Task, run_task
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.verdict import judge
 from hdrive_mbs.errors import AnalysisError
@@ -223,6 +223,22 @@ def test_other_laws_of_the_best_label_begin_with_its_values(simulator: Simulator
     assert other_laws([dahl], base, everything, 2.1) == []  # leaves nothing that is worth it
     assert [item.hypothesis for _, item in unfinished([dahl])] == [hypothesis]
     assert unfinished([dataclasses.replace(dahl, fitted=dataclasses.replace(fitted, converged=True))]) == []
+
+
+def test_a_fit_beside_a_leading_one_is_given_up_early_where_it_is_hopeless() -> None:
+    missing = Simulator(BENCH.trials(records((hm.CoulombStribeckFriction(coulomb=8.0), "load"))[0]), 2.5e-4, 4)
+    hypothesis = Hypothesis(factors_of(BENCH), (Added(hm.QuadraticDrag(coefficient=1e-7), "motor", "drag"),))
+    task = Task(hypothesis, hypothesis.start(), None, 8, 1e-9)
+    full = run_task(missing, task)
+    assert full is not None
+    assert full.steps > FIRST
+    assert full.chi_fit > 20.0  # the load's friction is no drag of the motor
+    hopeless = run_task(missing, dataclasses.replace(task, leading=1.0))
+    far = run_task(missing, dataclasses.replace(task, leading=0.2 * full.chi_fit))
+    assert hopeless is not None
+    assert far is not None
+    assert hopeless.steps == FIRST
+    assert far.cost == pytest.approx(full.cost, rel=0.02)
 
 
 def test_what_a_search_chooses_among_counts_in_the_prior() -> None:
