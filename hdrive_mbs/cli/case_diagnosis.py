@@ -61,12 +61,14 @@ class CaseDiagnosis:
     """Diagnoses the records under the path ``records`` of a point; gives figures and the files of the report.
 
     bench : a .py file, or the scene of a scene file;  effects : files with effects of the user's own
+    only : classes or families of effects that are tried; all if empty
     reading : how records are read;  program : hash of the program, so that another one makes another job
     work : folder in which fits are kept while a case is not finished; not used by a worker that does not see it
     """
 
     bench: GivenFile | Scene
     effects: tuple[GivenFile, ...]
+    only: tuple[str, ...] = ()
     reading: Mapping[str, Any]
     program: str
     work: str
@@ -78,7 +80,7 @@ class CaseDiagnosis:
         if content_hash(files) != point["sha256"]:
             raise FileFormatError(f"{point['records']}: the records differ on this machine from the caller's, or have changed since.")
         bench = open_bench(self.bench.opened()) if isinstance(self.bench, GivenFile) else self.bench
-        kinds = tried([item.opened() for item in self.effects])
+        kinds = tried([item.opened() for item in self.effects], self.only)
         measured = measured_in(files, self.reading)
         from hdrive_mbs.diagnosis.diagnose import diagnose as run
 

@@ -17,9 +17,9 @@ import typer
 from hdrive_mbs.cli.options import JsonFile
 from hdrive_mbs.cli.output import write_json
 from hdrive_mbs.cli.python_file import imported, lines_named, own_effects
-from hdrive_mbs.cli.records_options import BenchFile, Channels, OwnEffects, Repairs, TimeColumn, Units, reading_of
+from hdrive_mbs.cli.records_options import BenchFile, Channels, Only, OwnEffects, Repairs, TimeColumn, Units, reading_of
 from hdrive_mbs.cli.stages import stage_bars
-from hdrive_mbs.errors import FileFormatError, HdriveError, SceneError
+from hdrive_mbs.errors import FileFormatError, HdriveError, SceneError, unknown_place
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.scene_file import load_scene, save_scene
 from hdrive_mbs.writing import write_text
@@ -41,6 +41,7 @@ def diagnose(
     ],
     more: Annotated[list[Path] | None, typer.Argument(metavar="[RECORD]...", help="More records: what follows --records.")] = None,
     effects: OwnEffects = None,
+    only: Only = None,
     channel: Channels = None,
     unit: Units = None,
     time: TimeColumn = None,
@@ -52,13 +53,13 @@ def diagnose(
 ) -> None:
     """Say where the gap between simulation and records lies, which effect causes it, and how far it shrinks once that is added."""
     chosen = open_bench(scene)
-    kinds = tried(effects or ())
+    kinds = tried(effects or (), only or ())
     reading = reading_of(channel, unit, time, repair)
     paths = [*records, *(more or ())]
     measured = measured_in(paths, reading)
     name = chosen.name if isinstance(chosen, Scene) else chosen.scene.name
     folder = out or Path("results") / re.sub(r"\W+", "_", f"diagnosis {name}")
-    work = _begin(folder / WORK, _job(scene, measured, effects or (), reading), resume)
+    work = _begin(folder / WORK, _job(scene, measured, effects or (), only or (), reading), resume)
     from hdrive_mbs.diagnosis.diagnose import diagnose as run
 
     try:
@@ -103,14 +104,22 @@ def open_bench(path: Path) -> Bench | Scene:
     raise SceneError(f"{path} has neither a function bench() that returns a Bench nor build() that returns a Scene.")
 
 
-def tried(files: Sequence[Path]) -> list[type[Effect]] | None:
-    """The library and the effects of these files; None for the library alone."""
-    if not files:
+def tried(files: Sequence[Path], only: Sequence[str] = ()) -> list[type[Effect]] | None:
+    """The library and the effects of these files; None for the library alone.
+
+    only : classes or families that are tried, all if empty;  raises PlaceError for one that there is not
+    """
+    if not files and not only:
         return None
     own = [kind for path in files for kind in own_effects(path)]
     from hdrive_mbs.diagnosis.candidates import known_effects
 
-    return [*own, *(kind for kind in known_effects() if kind not in own)]
+    known = [*own, *(kind for kind in known_effects() if kind not in own)]
+    for name in only:
+        names = [name for kind in known for name in (kind.__name__, kind.family)]
+        if name not in names:
+            raise unknown_place("effect", name, dict.fromkeys(names), "The library, with your own files,")
+    return [kind for kind in known if not only or kind.__name__ in only or kind.family in only]
 
 
 def write_answer(result: Diagnosis, folder: Path) -> None:
@@ -146,12 +155,13 @@ def measured_in(paths: Sequence[Path], reading: Mapping[str, Any]) -> Records:
     return Records(records=tuple(record for records in found for record in records))
 
 
-def _job(scene: Path, records: Records, effects: Sequence[Path], reading: Mapping[str, Any]) -> dict[str, Any]:
+def _job(scene: Path, records: Records, effects: Sequence[Path], only: Sequence[str], reading: Mapping[str, Any]) -> dict[str, Any]:
     """What is diagnosed, so that only the same is gone on with."""
     files = {"scene": scene, **{f"effects {path.name}": path for path in effects}}
     return {
         "files": {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in files.items()},
         "records": {record.name: record.sha256 for record in records},
+        "only": sorted(only),
         "reading": dict(reading),
     }
 

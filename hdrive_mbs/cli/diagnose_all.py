@@ -14,7 +14,7 @@ from hdrive_mbs.cli.case_diagnosis import CaseDiagnosis, GivenFile, cases_in, co
 from hdrive_mbs.cli.diagnose import WORK, open_bench, tried
 from hdrive_mbs.cli.options import JsonFile
 from hdrive_mbs.cli.output import print_table, write_json
-from hdrive_mbs.cli.records_options import BenchFile, Channels, OwnEffects, Repairs, TimeColumn, Units, reading_of
+from hdrive_mbs.cli.records_options import BenchFile, Channels, Only, OwnEffects, Repairs, TimeColumn, Units, reading_of
 from hdrive_mbs.cli.sweep import cell, tell_failures
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.writing import write_bytes, write_text
@@ -36,6 +36,7 @@ def diagnose_all(
     ],
     more: Annotated[list[Path] | None, typer.Argument(metavar="[DIR]...", help="More cases: what follows --records.")] = None,
     effects: OwnEffects = None,
+    only: Only = None,
     channel: Channels = None,
     unit: Units = None,
     time: TimeColumn = None,
@@ -54,7 +55,7 @@ def diagnose_all(
     from hdrive_mbs.records.reading import record_files
 
     opened = open_bench(scene)
-    tried(effects or ())  # says now what would fail in every case
+    tried(effects or (), only or ())  # says now what would fail in every case
     reading = reading_of(channel, unit, time, repair)
     cases = cases_in([*records, *(more or ())])
     folder = out or Path("results") / re.sub(r"\W+", "_", f"diagnoses {scene.stem}")
@@ -62,6 +63,7 @@ def diagnose_all(
     task = CaseDiagnosis(
         bench=opened if isinstance(opened, Scene) and scene.suffix.lower() != ".py" else GivenFile.of(scene),
         effects=tuple(GivenFile.of(path) for path in effects or ()),
+        only=tuple(only or ()),
         reading=reading,
         program=program(),
         work=str(work),

@@ -16,6 +16,10 @@ BenchFile = Annotated[
 OwnEffects = Annotated[
     list[Path] | None, typer.Option("--effects", metavar="FILE.py", help="A file of your own whose Effect classes are tried too.")
 ]
+Only = Annotated[
+    list[str] | None,
+    typer.Option("--only", metavar="EFFECT", help="Try this effect or family alone, like MeshFriction or friction (several times)."),
+]
 Channels = Annotated[
     list[str] | None,
     typer.Option("--channel", metavar="COLUMN=PLACE.QUANTITY", help="What a column measures, e.g. n_mot=motor.speed (several times)."),

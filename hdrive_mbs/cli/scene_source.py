@@ -103,7 +103,7 @@ def parse_effect(text: str) -> tuple[Effect, str]:
     if not sign or not place:
         raise FileFormatError(f"{text!r}: write TYPE@PLACE:field=value,field=value.")
     if name not in kinds:
-        raise unknown_place("effect", name, kinds, "The library")
+        raise unknown_place("effect", name, kinds, "The library (with what the scene's .py file imports: import your own effect there)")
     known: dict[str, Quantity | None] = {field.name: field.metadata.get("quantity") for field in dataclasses.fields(kinds[name])}
     values: dict[str, Any] = {}
     for item in filter(None, fields.split(",")):

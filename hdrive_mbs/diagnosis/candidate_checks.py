@@ -45,8 +45,8 @@ def check_candidates(tried: Sequence[Candidate], simulator: Simulator, factors: 
             )
 
 
-def left_out(tried: Sequence[Candidate], found: Search) -> tuple[str, ...]:
-    """Which causes no run was possible of, in words."""
+def left_out(tried: Sequence[Candidate], found: Search, step: float) -> tuple[str, ...]:
+    """Which causes no run was possible of with steps of that length [s], in words."""
     failed = sorted({f"{item.label[0]} at {item.label[1]}" for item in tried} - _labels(tried, set(found.looks)))
     if not failed:
         return ()
@@ -54,7 +54,10 @@ def left_out(tried: Sequence[Candidate], found: Search) -> tuple[str, ...]:
     more = "" if len(failed) <= LISTED else f", ... ({len(failed)} in all)"
     every = f"None of the {number} candidates" if len(failed) == number else f"{len(failed)} of {number} candidates"
     could = "could be run" if len(failed) == number else "could not be run"
-    return (f"{every} {could} with their start values: {', '.join(failed[:LISTED])}{more}. Give their fields other typical values.",)
+    return (
+        f"{every} {could} with their start values in steps of {1e3 * step:.3g} ms, and so were not tried: "
+        f"{', '.join(failed[:LISTED])}{more}. Give a shorter step, or their fields other typical values.",
+    )
 
 
 def _labels(tried: Sequence[Candidate], looks: set[str]) -> set[str]:

@@ -71,16 +71,16 @@ def _searched(kind: type[Effect]) -> bool:
     return bool(fields) and not any(quantity.sequence for quantity in fields)
 
 
-def candidates(scene: Scene, kinds: Iterable[type[Effect]] | None = None) -> list[Candidate]:
+def candidates(scene: Scene, kinds: Iterable[type[Effect]] | type[Effect] | None = None) -> list[Candidate]:
     """Every law at every place of a scene where it may sit.
 
-    kinds : effect classes to try; all known ones if not given
+    kinds : effect classes to try, or one; all known ones if not given
 
     Raises ParameterError for a class that says nothing to search, or for a user's effect whose ``places`` raises.
     """
     network = scene.network()
     found = []
-    for kind in known_effects() if kinds is None else kinds:
+    for kind in known_effects() if kinds is None else [kinds] if isinstance(kinds, type) else kinds:
         if not (isinstance(kind, type) and issubclass(kind, Effect)):
             raise ParameterError(f"{kind!r} is no effect class; give classes that subclass Effect, like CoulombStribeckFriction.")
         if not _searched(kind):

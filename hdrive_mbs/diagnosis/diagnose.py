@@ -22,7 +22,7 @@ from hdrive_mbs.diagnosis.experiment.choose import next_records
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.gap import gaps
 from hdrive_mbs.diagnosis.gather import Evidence, gather
-from hdrive_mbs.diagnosis.input_checks import check_records, check_trials
+from hdrive_mbs.diagnosis.input_checks import check_records, check_trials, not_compared
 from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.locate import NOWHERE, Localiser
 from hdrive_mbs.diagnosis.pictured import pictured
@@ -55,7 +55,7 @@ def diagnose(
     bench: Bench | Scene,
     records: Records | Sequence[Record] | Record,
     *,
-    candidates: Iterable[type[Effect]] | None = None,
+    candidates: Iterable[type[Effect]] | type[Effect] | None = None,
     workers: int | None = None,
     folder: str | Path | None = None,
     step: float | None = None,
@@ -103,7 +103,7 @@ def diagnose(
     if watch is not None:
         watch(evidence)
     found = answer(known, chosen, evidence, started=started, pictures=pictures)
-    notes = (*left_out(tried, evidence.single), *(() if journal is None else journal.said))
+    notes = (*not_compared(known, chosen), *left_out(tried, evidence.single, step), *(() if journal is None else journal.said))
     return dataclasses.replace(found, notes=(*found.notes, *notes))
 
 
@@ -112,6 +112,8 @@ def _records(records: Records | Sequence[Record] | Record) -> tuple[Record, ...]
     if not found:
         raise ParameterError("A diagnosis needs at least one record.")
     for record in found:
+        if not isinstance(record, Record):
+            raise ParameterError(f"{record!r} is no record. Read it first: hm.diagnose(bench, hm.read_records({records!r})).")
         record.checked()  # before a bench is made from them
     return found
 

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.scale_checks import check_scale
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.unknowns import Factor
@@ -110,7 +111,7 @@ def check_trials(simulator: Simulator, factors: Sequence[Factor]) -> None:
     """Hold samples against the nominal model.
 
     Raises RecordError for too few samples, records in which nothing moves, a column that stands still while the model
-    moves, and a record that starts at another speed than the scene.
+    moves, one that is the factor of a unit away from what the model does, and a record that starts at another speed than the scene.
     """
     for trial in simulator.trials:
         _check_samples(trial)
@@ -127,7 +128,22 @@ def check_trials(simulator: Simulator, factors: Sequence[Factor]) -> None:
         units = _units(trial.scene.network())
         for column in trial.columns:
             _check_alive(trial, column, own[column], units)
+            check_scale(trial, column, own[column], units.get(trial.measured[column].channel, ""))
             _check_start(trial, column, own[column], units)
+
+
+def not_compared(bench: Bench, records: Sequence[Record]) -> tuple[str, ...]:
+    """Columns that the bench measures and a record has not, in words."""
+    found = []
+    for column in bench.measured:
+        without = [record for record in records if column not in record.channels]
+        if without:
+            where = ", ".join(repr(record.name) for record in without)
+            known = {*bench.measured, *bench.inputs}
+            others = sorted({name for record in without for name in record.channels if name not in known})
+            unused = f" Columns there that the bench does not know: {', '.join(others)}." if others else ""
+            found.append(f"{column!r}, which the bench measures, was not compared in {where}: no such column there.{unused}")
+    return tuple(found)
 
 
 def _check_samples(trial: Trial) -> None:

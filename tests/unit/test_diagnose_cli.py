@@ -182,6 +182,16 @@ def test_effects_of_an_own_file_are_tried_beside_the_library(asked: list[dict[st
     assert {"CoulombStribeckFriction", "KinematicError", "BoucWenHysteresis"} <= set(names)
 
 
+def test_only_some_effects_are_tried_by_class_or_family(asked: list[dict[str, Any]], tmp_path: Path) -> None:
+    own = written(tmp_path, SEAL_DRAG, "seal")
+    scene, file = written(tmp_path, BENCH), record(tmp_path, "a.csv")
+    words = ("--effects", own, "--only", "SealDrag", "--only", "mesh_friction", "--out", str(tmp_path / "out"))
+    assert invoke(scene, "--records", file, *words).exit_code == 0
+    assert {kind.__name__ for kind in asked[0]["candidates"]} == {"SealDrag", "MeshFriction", "MeshPreslidingFriction"}
+    with pytest.raises(hm.PlaceError, match=r"No effect 'MeshFrction'\. The library, with your own files, has .*MeshFriction"):
+        invoke(scene, "--records", file, "--only", "MeshFrction", "--out", str(tmp_path / "out"))
+
+
 def test_other_processes_can_read_an_effect_of_an_own_file(path: list[str], tmp_path: Path) -> None:
     kind = own_effects(Path(written(tmp_path, SEAL_DRAG, "sent")))[0]
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:

@@ -13,11 +13,15 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
+from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.diagnose import diagnose, factors_of
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.input_checks import check_trials
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.result import Diagnosis
+from hdrive_mbs.diagnosis.scale_checks import check_scale
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.effects.bearing_cubic_stiffness import BearingCubicStiffness
 from hdrive_mbs.effects.effect import Effect, MemoryTorqueEffect, TorqueEffect, add_body_torque
 from hdrive_mbs.effects.kinematic_error import KinematicError
@@ -49,6 +53,54 @@ def refused(kind: type[Exception], *words: str, **given: object) -> None:
     text = str(caught.value)
     for word in words:
         assert word in text, text
+
+
+# -- units and columns ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("size", "words"),
+    [
+        (math.pi / 180.0, "'motor_angle' is 0.0174"),
+        (180.0 / math.pi, "'motor_angle' is 57."),
+        (1.0 / (2.0 * math.pi), "'motor_angle' is 0.159"),
+    ],
+)
+def test_a_column_a_unit_away_from_the_model_is_refused(size: float, words: str) -> None:
+    refused(hm.RecordError, words, "times what motor_encoder of the nominal scene does", "units={'motor_angle': ...}",
+            given=changed("motor_angle", lambda values: size * values))  # fmt: skip
+
+
+def test_a_factor_that_no_unit_has_is_a_gap_and_not_a_unit() -> None:
+    simulator = Simulator(bench().trials(changed("motor_angle", lambda values: 1.3 * values)[0]), 1e-3)
+    hypothesis = Hypothesis(factors_of(bench()))
+    [own] = simulator.columns(hypothesis, np.zeros(hypothesis.size))
+    check_scale(simulator.trials[0], "motor_angle", own["motor_angle"], "rad")
+    check_scale(simulator.trials[0], "motor_torque", own["motor_torque"], "N m")
+
+
+def test_what_is_no_record_is_refused_and_one_class_is_a_list_of_one() -> None:
+    with pytest.raises(hm.ParameterError, match=r"Read it first: hm\.diagnose\(bench, hm\.read_records\('run_a\.csv'\)\)"):
+        diagnose(bench(), "run_a.csv")  # type: ignore[arg-type]
+    assert candidates(bench().scene, hm.ViscousDrag) != []
+
+
+def test_a_measured_column_that_no_record_has_is_named_in_the_notes() -> None:
+    given = tuple(record.without("load_angle") for record in quiet())
+    [note] = [note for note in run(given=given, kinds=(hm.ViscousDrag,)).notes if "load_angle" in note]
+    assert note == "'load_angle', which the bench measures, was not compared in 'staircase', 'load_cycle': no such column there."
+
+
+def test_effects_with_states_of_their_own_can_be_run_on_a_record_of_a_kilohertz() -> None:
+    trials = bench().trials(quiet()[0])
+    assert trials[0].every == 1e-3
+    step = suitable_step(trials, factors_of(bench()))
+    assert step == 5e-4
+    kinds = [hm.SensorDelay, hm.ActuatorLag, hm.SeriesCompliance, hm.SensorLag]
+    simulator = Simulator(trials, step)
+    for one in candidates(bench().scene, kinds):
+        hypothesis = Hypothesis(factors_of(bench()), one.first[:1])
+        assert simulator.residuals(hypothesis, [hypothesis.start()])[0] is not None, one.label
 
 
 # -- records against the bench ----------------------------------------------------------------------------

@@ -86,6 +86,12 @@ def _judged(whole: Measurement, rate: Measurement, ratio: float, together: bool)
         if _near(ratio, 1.0 / size)
     ]
     causes += [
+        f"{whole.name} is in {whole.unit} and was read as {unit}" for unit, size in _WHOLE_IN[whole.unit].items() if _near(ratio, size)
+    ]
+    causes += [
+        f"{rate.name} is in {rate.unit} and was read as {unit}" for unit, size in _RATE_IN[rate.unit].items() if _near(ratio, 1.0 / size)
+    ]
+    causes += [
         f"{whole.name} is in {one} and {rate.name} in {other}"
         for one, size in _WHOLE_IN[whole.unit].items()
         for other, scale in _RATE_IN[rate.unit].items()
