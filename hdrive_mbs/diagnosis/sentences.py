@@ -41,7 +41,10 @@ def verdict(diagnosis: Diagnosis) -> str:
 def confidence(diagnosis: Diagnosis) -> str:
     """How sure that is."""
     if diagnosis.causes:
-        return "Probability " + listed([probability(cause.probability) for cause in diagnosis.causes]) + "."
+        chances = [cause.probability for cause in diagnosis.causes]
+        if len(chances) == 2 and chances[0] == chances[1]:
+            return f"Probability {probability(chances[0])} of both together."
+        return "Probability " + listed([probability(chance) for chance in chances]) + "."
     none = next((item for item in diagnosis.ranking if item.effect == diagnosis.verdict), None)
     return f"Probability {probability(none.probability)}." if none is not None else ""
 

@@ -128,7 +128,7 @@ def _probabilities(found: Sequence[Found], chosen: Found | None, null_misfit: fl
     for item in found:
         label = item.suspect.label
         scores[label] = max(scores.get(label, -math.inf), _excess(item, null_misfit) / TEMPERATURE)
-    both = [item.label for item in chosen.fitted.hypothesis.added] if chosen is not None and chosen not in found else []
+    both = _parts(chosen, found) if chosen is not None and chosen not in found else []
     if both:
         scores = dict.fromkeys(both[:1], max(scores.values()) + PAIR / TEMPERATURE) | {k: v for k, v in scores.items() if k not in both}
     if kind == "unknown" or null_misfit > CLEAN:
@@ -146,3 +146,14 @@ def _probabilities(found: Sequence[Found], chosen: Found | None, null_misfit: fl
     if both:
         chances |= dict.fromkeys(both[1:], chances[both[0]])
     return dict(sorted(chances.items(), key=lambda pair: -pair[1]))
+
+
+def _parts(pair: Found, singles: Sequence[Found]) -> list[Label]:
+    """Labels of the two causes of a pair: effects, and parameters that it lets loose."""
+    hypothesis = pair.fitted.hypothesis
+    loose = [
+        item.suspect.label
+        for item in (*singles, pair)
+        if item.suspect.label[0] == "parameter" and set(item.suspect.first[0].loose) <= set(hypothesis.loose)
+    ]
+    return list(dict.fromkeys([*(item.label for item in hypothesis.added), *loose]))

@@ -37,6 +37,12 @@ def test_report_begins_with_the_verdict_in_words(sample: str, first: str) -> Non
     assert lines[3] == first
 
 
+def test_two_causes_with_one_probability_are_not_read_as_a_sum() -> None:
+    answer = SAMPLES["two"]()
+    shared = dataclasses.replace(answer, causes=tuple(dataclasses.replace(cause, probability=0.79) for cause in answer.causes))
+    assert "Probability 0.79 of both together." in report_text(shared)
+
+
 @pytest.mark.parametrize("sample", SAMPLES)
 def test_report_has_no_raw_nan_or_infinity_and_no_blank_at_line_ends(sample: str) -> None:
     text = report_text(SAMPLES[sample]())

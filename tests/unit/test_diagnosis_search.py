@@ -135,6 +135,24 @@ def test_an_effect_needs_odds_and_a_gap_that_it_closes(simulator: Simulator, dro
     )
 
 
+def test_two_causes_that_are_claimed_together_share_one_probability(simulator: Simulator) -> None:
+    """Also where they are parameters, which a hypothesis has let loose and not added."""
+    factors = factors_of(BENCH)
+    everything = suspects(Hypothesis(factors), {"load_inertia": ("load_inertia",), "drag": ("load_viscous",)}, [])
+    first, second = everything
+    both = Hypothesis(factors, (), {**first.first[0].loose, **second.first[0].loose})
+    fits = {
+        name: dataclasses.replace(fit(simulator, hypothesis, hypothesis.start(), steps=0), chi_fit=left_, chi_held=left_)
+        for name, hypothesis, left_ in (("first", first.first[0], 4.0), ("second", second.first[0], 6.0), ("both", both, 1.0))
+    }
+    singles = [Found(first, fits["first"], 900.0), Found(second, fits["second"], 300.0)]
+    claim = judge(20.0, singles, Found(second, fits["both"], 1500.0))
+    assert claim.fit is not None
+    assert claim.fit.fitted is fits["both"]
+    chances = claim.probabilities
+    assert chances["parameter", "load_inertia"] == chances["parameter", "drag"] > 0.9
+
+
 def test_a_size_of_zero_runs_on_the_same_machine_code_as_any_other(simulator: Simulator) -> None:
     added = Added(hm.KinematicError(amplitude=1e-5, order=2.0), "gear", "error")
     hypothesis = Hypothesis(factors_of(BENCH), (added,))
