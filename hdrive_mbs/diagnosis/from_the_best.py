@@ -19,6 +19,8 @@ STEPS = 8
 """Joint steps of another law or place."""
 STARTS = 2
 """Of another law of the best label."""
+BENT = 3.0
+"""Prior standard deviations of a parameter from which on it is suspected whatever a look shows."""
 RIVALS = 2
 """Labels whose best laws are fitted to the end."""
 AGAIN = 2
@@ -33,6 +35,16 @@ def restarts(found: Sequence[Found], least: float) -> list[tuple[Suspect, Task]]
             hypothesis, z = item.fitted.hypothesis.rescaled(item.fitted.z)
             tasks.append((item.suspect, Task(hypothesis, as_known(hypothesis, z), None, CONVERGED, FINE)))
     return tasks
+
+
+def bent(base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:
+    """Parameters that a fitted model has moved far, let loose: where they stand at the end of what they may, a look shows little of it."""
+    far = {item.name for item, z in zip(base.hypothesis.factors, base.hypothesis.nominal_part(base.z), strict=True) if abs(z) > BENT}
+    return [
+        (suspect, Task(suspect.all[0], suspect.all[0].start(base.hypothesis.nominal_part(base.z)), None, CONVERGED, FINE, hops=1))
+        for suspect in everything
+        if suspect.law == PARAMETER and far & (set(suspect.all[0].loose) - set(base.hypothesis.loose))
+    ]
 
 
 def unfinished(found: Sequence[Found]) -> list[tuple[Suspect, Task]]:

@@ -12,7 +12,7 @@ from hdrive_mbs.diagnosis.beginnings import begun_at, beside, widths_of
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import beyond, enough, picked, spread_out, worth
 from hdrive_mbs.diagnosis.fit import Fitted, fit
-from hdrive_mbs.diagnosis.from_the_best import elsewhere, other_laws, restarts, unfinished
+from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, restarts, unfinished
 from hdrive_mbs.diagnosis.ground import held, screen_from
 from hdrive_mbs.diagnosis.hops import settled
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
@@ -124,6 +124,8 @@ def search(
         moved = elsewhere(found[0] if found else None, base, everything) + (restarts(found, FAR) if how.laws > 1 else [])
         found = cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
         found = cheapest([*found, *work.fitted(unfinished(found), "fitting the best")])
+    if how.laws > 1 and base.chi_fit < NEAR:
+        found = cheapest([*found, *work.fitted(bent(base, everything), "fitting parameters that the nominal model has bent")])
     final = sorted((scored(item, base) for item in found), key=lambda item: -item.log_odds)
     likely_first = tuple(dict.fromkeys(suspect.label for suspect, _ in first))
     return Search(base=base, found=tuple(final), looks=looks, likely=likely_first)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.suspects import Label
@@ -29,6 +29,9 @@ FITS = 1.6
 """Mean square below which a claim stands whatever its share."""
 TIED = 5.0
 """Difference of log odds within which two labels cannot be told apart."""
+PLAIN = 0.998
+"""Share of an effect's log odds with which a parameter is preferred to it: an effect imitates a parameter at an end of its range, like a
+hidden mode far above all frequencies an inertia, and nibbles a little more.  In our own second drive set c08 gave it 0.9997."""
 SECOND, MORE, COMPARABLE = 25.0, 0.5, 0.1
 """What a second cause needs besides the first: log odds over it, and either the share of the logarithm of what the first
 leaves that it has to take away, or log odds that are this share of the first one's.  Laws that are nearly right always
@@ -66,6 +69,7 @@ def judge(null_misfit: float, found: Sequence[Found], pair: Found | None) -> Cla
     null_misfit : what the refitted nominal model leaves, see ``left``
     found : single causes on all samples, best first;  pair : the best pair, its log odds those over the nominal model
     """
+    found = _plain_first(found)
     singles = [item for item in found if _excess(item, null_misfit) > 0.0]
     best = singles[0] if singles else None
     if best is None:
@@ -80,6 +84,16 @@ def judge(null_misfit: float, found: Sequence[Found], pair: Found | None) -> Cla
     close = [item.suspect.label for item in singles if chosen is best and item is not best and best.log_odds - item.log_odds < TIED]
     tied = tuple(dict.fromkeys(label for label in close if label != best.suspect.label))
     return Claim(kind_of(chosen), chosen, tied, probabilities)
+
+
+def _plain_first(found: Sequence[Found]) -> list[Found]:
+    """Best first, with effects that do no better than a parameter's copy behind it: as if they could not be told from it."""
+    plain = max((item.log_odds for item in found if item.suspect.label[0] == "parameter"), default=-math.inf)
+    judged = [
+        replace(item, log_odds=plain - TIED) if plain < item.log_odds <= plain / PLAIN and item.suspect.label[0] != "parameter" else item
+        for item in found
+    ]
+    return sorted(judged, key=lambda item: -item.log_odds)
 
 
 def _excess(found: Found, null_misfit: float) -> float:
@@ -151,9 +165,7 @@ def _probabilities(found: Sequence[Found], chosen: Found | None, null_misfit: fl
 def _parts(pair: Found, singles: Sequence[Found]) -> list[Label]:
     """Labels of the two causes of a pair: effects, and parameters that it lets loose."""
     hypothesis = pair.fitted.hypothesis
-    loose = [
-        item.suspect.label
-        for item in (*singles, pair)
-        if item.suspect.label[0] == "parameter" and set(item.suspect.first[0].loose) <= set(hypothesis.loose)
-    ]
-    return list(dict.fromkeys([*(item.label for item in hypothesis.added), *loose]))
+    parameters = [item for item in singles if item.suspect.label[0] == "parameter"]
+    loose = [item.suspect.label for item in parameters if set(item.fitted.hypothesis.loose) <= set(hypothesis.loose)]
+    second = [pair.suspect.label] if pair.suspect.label[0] == "parameter" else []
+    return list(dict.fromkeys([*(item.label for item in hypothesis.added), *loose, *second]))

@@ -13,7 +13,7 @@ from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.choosing import beyond, enough, spread_out
 from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian, secant
-from hdrive_mbs.diagnosis.from_the_best import other_laws, unfinished
+from hdrive_mbs.diagnosis.from_the_best import bent, other_laws, unfinished
 from hdrive_mbs.diagnosis.gather import wants_second
 from hdrive_mbs.diagnosis.ground import held, screen_from
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
@@ -133,6 +133,36 @@ def test_an_effect_needs_odds_and_a_gap_that_it_closes(simulator: Simulator, dro
     assert max(claim.probabilities, key=lambda label: claim.probabilities[label]) == (
         ("none", "") if kind == "none" else found.suspect.label
     )
+
+
+def test_a_parameter_is_preferred_to_an_effect_that_does_hardly_better(simulator: Simulator) -> None:
+    factors = factors_of(BENCH)
+    [inertia] = suspects(Hypothesis(factors), {"load_inertia": ("load_inertia",)}, [])
+    mode = Hypothesis(factors, (Added(hm.HiddenMode(inertia=0.1, natural_frequency=2e3), "load", "mode"),))
+    hidden = Suspect(("hidden_mode", "load"), "HiddenMode", (mode,), (mode,))
+    fits = [
+        dataclasses.replace(fit(simulator, item, item.start(), steps=0), chi_fit=1.0, chi_held=1.0) for item in (mode, inertia.first[0])
+    ]
+    for better, kind in ((1.0003, "parameter"), (1.03, "effect")):
+        claim = judge(50.0, [Found(hidden, fits[0], better * 1e5), Found(inertia, fits[1], 1e5)], None)
+        assert claim.kind == kind
+        assert max(claim.probabilities, key=lambda label: claim.probabilities[label])[0] == (
+            "parameter" if kind == "parameter" else "hidden_mode"
+        )
+
+
+def test_a_parameter_that_the_nominal_model_has_bent_is_suspected_whatever_it_shows(simulator: Simulator) -> None:
+    hypothesis = Hypothesis(factors_of(BENCH))
+    z = np.zeros(hypothesis.size)
+    z[[item.name for item in hypothesis.factors].index("load_inertia")] = -4.2
+    base = dataclasses.replace(fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=0), z=z)
+    everything = suspects(
+        hypothesis, {name: (name,) for name in ("load_inertia", "load_viscous")}, candidates(BENCH.scene, [hm.ViscousDrag])
+    )
+    [(suspect, task)] = bent(base, everything)
+    assert suspect.label == ("parameter", "load_inertia")
+    np.testing.assert_allclose(task.hypothesis.nominal_part(task.z), z)
+    assert list(bent(dataclasses.replace(base, z=0.7 * z), everything)) == []
 
 
 def test_two_causes_that_are_claimed_together_share_one_probability(simulator: Simulator) -> None:
