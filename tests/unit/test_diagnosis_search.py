@@ -135,6 +135,23 @@ def test_an_effect_needs_odds_and_a_gap_that_it_closes(simulator: Simulator, dro
     )
 
 
+@pytest.mark.parametrize(
+    ("null", "leaves", "kind"),
+    [
+        (1.022, 1.013, "unknown"),  # two fifths of a faint gap: a part of what something else does
+        (1.022, 1.009, "effect"),
+        (1.0075, 1.0039, "effect"),  # what is left may be noise
+        (1.14, 1.10, "effect"),  # not faint: a law may be far from right
+    ],
+)
+def test_of_a_faint_gap_an_effect_has_to_take_half(simulator: Simulator, null: float, leaves: float, kind: str) -> None:
+    hypothesis = Hypothesis(factors_of(BENCH), (Added(hm.ViscousDrag(coefficient=0.01), "load", "drag"),))
+    fitted = dataclasses.replace(fit(simulator, hypothesis, hypothesis.start(), steps=0), chi_fit=leaves, chi_held=leaves)
+    claim = judge(null, [Found(Suspect(("viscous_drag", "load"), "ViscousDrag", (hypothesis,), (hypothesis,)), fitted, 400.0)], None)
+    assert claim.kind == kind
+    assert (max(claim.probabilities, key=lambda label: claim.probabilities[label])[0] == "unknown") == (kind == "unknown")
+
+
 def test_a_parameter_is_preferred_to_an_effect_that_does_hardly_better(simulator: Simulator) -> None:
     factors = factors_of(BENCH)
     [inertia] = suspects(Hypothesis(factors), {"load_inertia": ("load_inertia",)}, [])
