@@ -7,6 +7,7 @@ from typing import Any
 
 from benchmarks.withheld.finding import Claimed, Finding
 from benchmarks.withheld.names import Label, Name, Names, verdict_of
+from hdrive_mbs.diagnosis.locate import NOWHERE
 
 WORDS = ("none", "unknown")
 """Entries of a ranking that are no causes."""
@@ -105,7 +106,7 @@ def _chance(name: Name, chances: Mapping[tuple[str, str | None], float]) -> floa
 
 
 def _where(finding: Finding, names: Names, claimed: list[Name]) -> list[dict[str, Any]]:
-    """Places of the claim first, then the located ones, then those of what was ranked."""
+    """Places of the claim first, then the located ones, then those of what was ranked; these before where nothing was located."""
     by_rank: dict[str, float] = {}
     together, seen = [item.label for item in finding.claimed], []
     for label, probability in finding.ranking.items():
@@ -115,9 +116,13 @@ def _where(finding: Finding, names: Names, claimed: list[Name]) -> list[dict[str
             by_rank[place] = by_rank.get(place, 0.0) + (0.0 if again else probability)
             seen.append(label)
     located: dict[str, float] = {}
+    nothing = max(finding.where, key=lambda at: finding.where[at], default=None) == NOWHERE
     for at, probability in finding.where.items():
+        if at == NOWHERE:
+            continue
         located[names.place(at)] = located.get(names.place(at), 0.0) + probability
     unnamed = [] if claimed else [names.place_of(item.label) for item in finding.claimed]
     ranked = [] if finding.verdict == "none" else sorted(by_rank, key=lambda at: -by_rank[at])
-    order = dict.fromkeys([*(at for _, at in claimed), *unnamed, *sorted(located, key=lambda at: -located[at]), *ranked])
+    places = sorted(located, key=lambda at: -located[at])
+    order = dict.fromkeys([*(at for _, at in claimed), *unnamed, *((*ranked, *places) if nothing else (*places, *ranked))])
     return [{"at": at, "probability": max(by_rank.get(at, 0.0), located.get(at, 0.0))} for at in order]

@@ -163,6 +163,9 @@ def test_no_claim_names_places_only_where_something_was_located() -> None:
     lost = answer_of("drive-c01", finding("unknown", ranking={("unknown", ""): 0.9, ("friction", "load"): 0.1}, where={"gear": 0.8}), DRIVE)
     assert quiet["where"] == []
     assert [item["at"] for item in lost["where"]] == ["flexspline", "load"]
+    nowhere = {"nowhere": 0.9, "gear": 0.1}
+    faint = answer_of("drive-c01", finding("unknown", ranking={("unknown", ""): 0.9, ("friction", "load"): 0.1}, where=nowhere), DRIVE)
+    assert [item["at"] for item in faint["where"]] == ["load", "flexspline"]  # the nearest law's place, then what was located
 
 
 def test_a_diagnosis_becomes_a_finding_with_its_gap_and_parameters() -> None:
