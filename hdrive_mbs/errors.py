@@ -62,10 +62,12 @@ LISTED = 40
 
 
 def unknown_place(kind: str, name: str, known: Iterable[str], owner: str = "This scene") -> PlaceError:
-    """A PlaceError of the form ``No place 'gaer'. This scene has: motor, gear.``"""
+    """A PlaceError of the form ``No place 'gaer'. This scene has: motor, gear. Did you mean 'gear'?``"""
     names = list(known)
     if len(names) <= LISTED:
-        return PlaceError(f"No {kind} {name!r}. {owner} has: {', '.join(names) or 'none'}.")
+        near = difflib.get_close_matches(str(name), names, 1, 0.7) if len(names) > 1 else []
+        meant = "".join(f" Did you mean {one!r}?" for one in near)
+        return PlaceError(f"No {kind} {name!r}. {owner} has: {', '.join(names) or 'none'}.{meant}")
     alike = list(dict.fromkeys([*difflib.get_close_matches(name, names, 8, 0.5), *(one for one in names if one.startswith(f"{name}."))]))
     few = alike[:16] or names[:16]
     which = "like it" if alike else "for instance"

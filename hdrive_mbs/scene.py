@@ -156,8 +156,9 @@ class Scene:
 
     def _unknown_path(self, path: str, error: PlaceError) -> PlaceError:
         near = difflib.get_close_matches(path, list(self.parameters()), n=1)
-        hint = f" Did you mean {near[0]!r}?" if near else ""
-        return PlaceError(f"{path!r}: {error}{hint}")
+        if not near:
+            return PlaceError(f"{path!r}: {error}")
+        return PlaceError(f"{path!r}: {str(error).partition(' Did you mean')[0]} Did you mean {near[0]!r}?")
 
     # -- questions -------------------------------------------------------------------------------
     def effect(self, name: str) -> PlacedEffect:

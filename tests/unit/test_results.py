@@ -359,4 +359,5 @@ def test_of_many_names_an_error_lists_those_that_are_spelt_alike() -> None:
     assert text.startswith("No channel 'place_7.z'. This response has 60, like it: place_7.")
     assert text.count(",") < 20
     assert "This response has 60, for instance: place_0.x" in str(unknown_place("channel", "???", names, "This response"))
-    assert str(unknown_place("place", "gaer", ["motor", "gear"])) == "No place 'gaer'. This scene has: motor, gear."
+    assert str(unknown_place("place", "gaer", ["motor", "gear"])) == "No place 'gaer'. This scene has: motor, gear. Did you mean 'gear'?"
+    assert str(unknown_place("place", "x", ["motor", "gear"])) == "No place 'x'. This scene has: motor, gear."
