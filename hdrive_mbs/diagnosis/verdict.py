@@ -136,7 +136,7 @@ def _needed(first: Found, pair: Found) -> bool:
     """Whether a second cause is more than a patch on the law of the first."""
     gain = pair.log_odds - first.log_odds
     before, after = left(first.fitted), left(pair.fitted)
-    if gain <= SECOND or before <= 1.0 or after >= before:
+    if gain <= SECOND or before <= NOISE or after >= before:
         return False
     return math.log(max(after, 1.0)) < (1.0 - MORE) * math.log(before) or gain > COMPARABLE * first.log_odds
 

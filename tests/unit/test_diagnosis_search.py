@@ -135,6 +135,21 @@ def test_an_effect_needs_odds_and_a_gap_that_it_closes(simulator: Simulator, dro
     )
 
 
+def test_no_second_cause_is_claimed_beside_one_that_leaves_noise(simulator: Simulator) -> None:
+    """Half of the logarithm of 1.00004 is gone with any second parameter."""
+    factors = factors_of(BENCH)
+    first, second = suspects(Hypothesis(factors), {name: (name,) for name in ("load_inertia", "load_viscous")}, [])
+    both = Hypothesis(factors, (), {**first.first[0].loose, **second.first[0].loose})
+    for leaves, parts in ((1.00004, 1), (1.5, 2)):
+        one, two = (
+            dataclasses.replace(fit(simulator, item, item.start(), steps=0), chi_fit=chi, chi_held=chi)
+            for item, chi in ((first.first[0], leaves), (both, 0.9988))
+        )
+        claim = judge(68000.0, [Found(first, one, 266_096.0)], Found(second, two, 266_193.0))
+        assert claim.fit is not None
+        assert len(claim.fit.fitted.hypothesis.loose) == parts
+
+
 @pytest.mark.parametrize(
     ("null", "leaves", "kind"),
     [
