@@ -107,9 +107,13 @@ class HarmonicDrive(Component):
         for flange, node in ends.items():
             factors[node.name] = factors.get(node.name, 0.0) + float(forward * relation[flange] * node.sense)
         connection = draft.add_connection(
-            name, factors, self._torque(), aliases=(f"{name}.mesh",), bodies={flange: node.name for flange, node in ends.items()}
+            name,
+            factors,
+            self._torque(),
+            aliases=(f"{name}.mesh",),
+            bodies={flange: node.name for flange, node in ends.items()},
+            gap=2.0 * self.law.half_gap,
         )
-        connection.gap = 2.0 * self.law.half_gap
         ring = ends["circular_spline"]
 
         def housing(moment: Moment) -> Value:

@@ -16,10 +16,11 @@ from hdrive_mbs.quantities import parameter
 class LostMotion(LawEffect):
     """A dead zone in front of the law of a connection, in which its damping goes on.
 
-    tau = T(d + sign(d) g/2, v),  d(x) = x + (sqrt((x - h)^2 + e^2) - sqrt((x + h)^2 + e^2))/2,  h = (g + b)/2
+    tau = T(r, 0) + T(s, v) - T(s, 0),  r = d + sign(d) g/2,  d(x) = x + (sqrt((x - h)^2 + e^2) - sqrt((x + h)^2 + e^2))/2,  h = (g + b)/2
 
-    with the law T(twist, rate) as it is without the effect, and its own gap g: lost motion of the gear, or 0.  For e = 0 the
-    law counts from the edges of the whole gap; e > 0 is a film or a soft flank that rounds them over about e.
+    with the law T(twist, rate) as it is without the effect, its own gap g (lost motion of the gear, or 0), and s that is r for
+    e = 0.  Then tau = T(s, v): the law counts from the edges of the whole gap.  e > 0 is a film or a soft flank that rounds the
+    elastic torque over about e there; damping stays as the law has it, in the gap or beyond its edges.
     The elastic torque depends on x alone, so no energy is made.
 
     Source: dead-zone model, Nordin, Gutman, Automatica 38 (2002) 1633, with the damping of seed F
@@ -43,4 +44,12 @@ class LostMotion(LawEffect):
     def changed_beyond(self, law: Callable[[Value, Value], Value], gap: float) -> Callable[[Value, Value], Value]:
         if self.width == 0.0:
             return law
-        return lambda twist, rate: law(beyond(dead_zone(twist, gap + self.width, self.film), gap), rate)
+        width = gap + self.width
+
+        def torque(twist: Value, rate: Value) -> Value:
+            sharp = beyond(dead_zone(twist, width, 0.0), gap)
+            if self.film == 0.0:
+                return law(sharp, rate)
+            return law(beyond(dead_zone(twist, width, self.film), gap), 0.0) + law(sharp, rate) - law(sharp, 0.0)
+
+        return torque

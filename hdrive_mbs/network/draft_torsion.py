@@ -25,13 +25,23 @@ class DraftTorsion(DraftChannels):
         self._finished: tuple[Element, ...] = ()
 
     def add_connection(
-        self, name: str, factors: dict[str, float], law: Torque, *, aliases: tuple[str, ...] = (), bodies: dict[str, str] | None = None
+        self,
+        name: str,
+        factors: dict[str, float],
+        law: Torque,
+        *,
+        aliases: tuple[str, ...] = (),
+        bodies: dict[str, str] | None = None,
+        gap: float = 0.0,
     ) -> ConnectionDraft:
-        """A torsional element along  x = sum(f_i q_i); channels twist, twist_rate and torque."""
+        """A torsional element along  x = sum(f_i q_i); channels twist, twist_rate and torque.
+
+        gap : full width about zero in which the law has no elastic torque
+        """
         merged: dict[str, float] = {}
         for coordinate, factor in factors.items():
             merged[coordinate] = merged.get(coordinate, 0.0) + factor
-        draft = ConnectionDraft(name, merged, law, bodies=dict(bodies or {}))
+        draft = ConnectionDraft(name, merged, law, bodies=dict(bodies or {}), gap=gap)
         self._connections[name] = draft
         self._aliases |= dict.fromkeys(aliases, name)
         return draft

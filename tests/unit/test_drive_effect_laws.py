@@ -168,6 +168,18 @@ def test_a_film_rounds_the_edges_of_the_whole_gap_of_a_gear(effect: hm.LawEffect
     np.testing.assert_allclose(changed.torque(moment, twists, 0.0), law.replacing(lost_motion=0.0).torque(inside), atol=1e-9)
 
 
+@pytest.mark.parametrize("film", [0.0, 6e-5])
+def test_lost_motion_leaves_the_damping_of_a_gear_out_of_its_whole_gap_where_the_gear_does(film: float) -> None:
+    law = hm.PiecewiseLinearStiffness(lost_motion=3e-4, stiffness_1=3e4, stiffness_2=6e4, stiffness_3=1e5, torque_1=20.0, torque_2=90.0)
+    moment = drive().network().moment(0.0, {}, {}, {})
+    twists = np.array([-3e-4, -2.4e-4, 0.0, 1e-4, 2.4e-4, 2.6e-4, 1e-3])  # the whole gap ends at 2.5e-4 rad
+    for inside, expected in ((False, [4.0, 0.0, 0.0, 0.0, 0.0, 4.0, 4.0]), (True, [4.0] * 7)):
+        gear = drive(law).replacing({"gear.damping": 2.0, "gear.damping_in_gap": inside})
+        connection = gear.with_effect(hm.LostMotion(width=2e-4, film=film), at="gear").network().connection("gear")
+        damping = connection.torque(moment, twists, 2.0) - connection.torque(moment, twists, 0.0)
+        np.testing.assert_allclose(damping, expected, atol=1e-12)
+
+
 def test_film_backlash_damps_by_the_film_inside_and_by_the_law_in_contact() -> None:
     torque = hm.FilmBacklash(backlash=0.02, film=1e-5, film_damping=0.1).changed(straight_law)
     # e/h = 1e-3: what is left of the other part is (e/h)^2/2
@@ -184,7 +196,13 @@ def test_a_gap_of_zero_is_the_law_itself(effect: hm.LawEffect) -> None:
 
 
 @pytest.mark.parametrize(
-    "effect", [hm.LostMotion(width=0.01, film=1e-3), hm.FilmBacklash(backlash=0.01, film=1e-3), hm.StiffnessAsymmetry(asymmetry=0.5)]
+    "effect",
+    [
+        hm.LostMotion(width=0.01, film=1e-3),
+        hm.FilmBacklash(backlash=0.01, film=1e-3),
+        hm.StiffnessAsymmetry(asymmetry=0.5),
+        hm.OneSidedStiffness(change=0.5, onset_twist=5e-3),
+    ],
 )
 def test_changed_laws_make_no_energy_without_damping(effect: Effect) -> None:
     response = hm.simulate(spring_to_ground().with_effect(effect, at="shaft"), 0.3, solver=TIGHT, initial={"disc.speed": 2.0})
