@@ -115,10 +115,10 @@ def tried(files: Sequence[Path], only: Sequence[str] = ()) -> list[type[Effect]]
     from hdrive_mbs.diagnosis.candidates import known_effects
 
     known = [*own, *(kind for kind in known_effects() if kind not in own)]
+    names = dict.fromkeys(text for kind in known for text in (kind.__name__, kind.family))
     for name in only:
-        names = [name for kind in known for name in (kind.__name__, kind.family)]
         if name not in names:
-            raise unknown_place("effect", name, dict.fromkeys(names), "The library, with your own files,")
+            raise unknown_place("effect", name, names, "The library, with your own files,")
     return [kind for kind in known if not only or kind.__name__ in only or kind.family in only]
 
 

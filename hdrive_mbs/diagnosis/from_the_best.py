@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 from hdrive_mbs.diagnosis.choosing import beyond
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.ground import as_known
-from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis, searched_fields
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect
 from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, Found, Task, further
 from hdrive_mbs.effects.effect import Effect
@@ -57,10 +56,7 @@ def unfinished(found: Sequence[Found]) -> list[tuple[Suspect, Task]]:
 
 
 def other_laws(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect], least: float) -> list[tuple[Suspect, Task]]:
-    """Laws of the best label that were not fitted yet, where the best leaves something: with its values in fields of the same name.
-
-    Laws of one family call the same thing by the same name.
-    """
+    """Laws of the best label that were not fitted yet, where the best leaves something: with its values in fields of the same name."""
     if not found or found[0].suspect.law == PARAMETER or found[0].fitted.chi_fit < least:
         return []
     best, known = found[0].fitted, {(item.suspect.label, item.suspect.law) for item in found}
@@ -80,18 +76,11 @@ def other_laws(found: Sequence[Found], base: Fitted, everything: Sequence[Suspec
 
 def _with_values(effect: Effect, other: Effect) -> Effect:
     """An effect with the values of another in searched fields of the same name; as it is where they do not go together."""
-    theirs = {name: value for name, value, metadata in other.fields() if _is_searched(metadata)}
+    shared = searched_fields(type(effect)).keys() & searched_fields(type(other)).keys()
     try:
-        return effect.replacing(
-            **{name: theirs[name] for name, _, metadata in effect.fields() if _is_searched(metadata) and name in theirs}
-        )
+        return effect.replacing(**{name: getattr(other, name) for name in shared})
     except ParameterError:
         return effect
-
-
-def _is_searched(metadata: Mapping[str, Any]) -> bool:
-    quantity = metadata.get("quantity")
-    return quantity is not None and quantity.typical is not None
 
 
 def elsewhere(best: Found | None, base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:

@@ -44,22 +44,21 @@ class Added:
     def choices(self) -> int:
         """Ways to choose what a search tries but does not vary: orders, sides."""
         kind = type(self.effect)
-        searched = {item.name for item in dataclasses.fields(kind) if _is_searched(item.metadata.get("quantity"))}
-        return math.prod(len(values) for name, values in kind.starts.items() if name not in searched)
+        return math.prod(len(values) for name, values in kind.starts.items() if name not in searched_fields(kind))
 
 
-def _is_searched(quantity: Quantity | None) -> bool:
-    return quantity is not None and quantity.typical is not None
+def searched_fields(kind: type[Effect]) -> dict[str, Quantity]:
+    """The fields of an effect that a search varies: those with a typical range."""
+    quantities = {item.name: item.metadata.get("quantity") for item in dataclasses.fields(kind)}
+    return {name: item for name, item in quantities.items() if item is not None and item.typical is not None}
 
 
 def unknowns_of(effect: Effect, name: str) -> tuple[Unknown, ...]:
     """The unknowns of an effect's fields with typical ranges."""
     kind = type(effect)
-    quantities = {item.name: item.metadata.get("quantity") for item in dataclasses.fields(kind)}
-    fields: dict[str, Quantity] = {key: item for key, item in quantities.items() if item is not None and item.typical is not None}
     phases = {phase: amplitude for amplitude, phase in kind.vectors}
     found: list[Unknown] = []
-    for key, item in fields.items():
+    for key, item in searched_fields(kind).items():
         assert item.typical is not None
         low, high = item.typical
         path = f"{name}.{key}"

@@ -1,7 +1,7 @@
 """Columns that are a factor of a unit away from what the nominal model does.
 
 A column y and its simulation s, both without their mean, are compared by least squares: y = c s.  Where they go together and c
-is 180/pi, 1000 or the like or one over it, the column was read in the wrong unit: no cause of the library makes such a factor.
+is 180/pi, 1000 or the like or one over it, the column was read in the wrong unit: gains of sensors are some per cent off.
 """
 
 from __future__ import annotations

@@ -85,27 +85,24 @@ class Screen:
             own = found[number * each : (number + 1) * each]
             if own[0] is not None:
                 step = self._step(hypothesis, origin, *self._columns(own, steps[first:]))
-                steps_ = [step, *self._held_back(hypothesis, origin, step)]
-                points = [hypothesis.clipped(origin + part * each_step) for each_step in steps_ for part in PARTS]
-                proposed += points
-                begun += [starts[number]] * len(points)
+                moves = [part * move for move in (step, *self._held_back(hypothesis, origin, step)) for part in PARTS]
+                proposed += [hypothesis.clipped(origin + move) for move in moves]
+                begun += [starts[number]] * len(moves)
         yield from self._run(hypothesis, proposed, begun)
 
     def _held_back(self, hypothesis: Hypothesis, origin: FloatArray, step: FloatArray) -> Iterator[FloatArray]:
         """The same step with all of the effect that was added last but its first strength divided by what that grows."""
-        at = self.null.hypothesis.size
-        for unknown in hypothesis.added[-1].unknowns if hypothesis.size > at else ():
-            part = slice(at, at + unknown.size)
-            at = part.stop
-            before = float(np.linalg.norm(origin[part]))
-            growth = float(np.linalg.norm(origin[part] + step[part])) / before if before > 0.0 else 0.0
-            if isinstance(unknown, Strength | Vector):
-                if growth > 1.0:
-                    others = np.ones(len(step))
-                    others[self.null.hypothesis.size :] = 1.0 / growth
-                    others[part] = 1.0
-                    yield step * others
-                return
+        own = self.null.hypothesis.size
+        pairs = zip(hypothesis.unknowns, hypothesis.slices, strict=True)
+        strengths = [part for unknown, part in pairs if part.start >= own and isinstance(unknown, Strength | Vector)]
+        if not strengths:
+            return
+        first = strengths[0]
+        before, after = (float(np.linalg.norm(point[first])) for point in (origin, origin + step))
+        if after > before > 0.0:
+            shares = np.where(np.arange(len(step)) < own, 1.0, before / after)
+            shares[first] = 1.0
+            yield step * shares
 
     def _run(self, hypothesis: Hypothesis, points: Sequence[FloatArray], begun: Sequence[Hypothesis]) -> Iterator[Look]:
         found = self.simulator.residuals(hypothesis, points) if points else []

@@ -189,6 +189,17 @@ def test_an_angle_in_degrees_is_found_by_the_speed() -> None:
     assert "motor_angle is in deg (units={'motor_angle': 'deg'})" in only(wrong.findings, "units").text
 
 
+def test_an_angle_that_is_no_degrees_is_named_beside_a_speed_that_may_be() -> None:
+    """Radians under a header that says degrees: the speed is right, and must not be the only one to blame."""
+    channels = drive()
+    wrong = record(**(channels | {"motor_angle": ("rad", np.radians(channels["motor_angle"][1]))}))
+    finding = only(wrong.findings, "units")
+    assert "motor_angle is in rad and was read as deg" in finding.text
+    assert finding.blocks
+    slow = record(**(channels | {"motor_speed": ("rad/s", channels["motor_speed"][1] * math.pi / 30.0)}))
+    assert "motor_speed is in rad/s and was read as rpm" in only(slow.findings, "units").text
+
+
 def test_an_accelerometer_in_multiples_of_gravity_with_an_offset_is_found() -> None:
     speed = 0.3 * np.sin(12.0 * TIMES)
     measured = 0.3 * 12.0 * np.cos(12.0 * TIMES) / 9.80665 + 0.05
