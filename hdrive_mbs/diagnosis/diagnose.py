@@ -24,9 +24,9 @@ from hdrive_mbs.diagnosis.gap import gaps
 from hdrive_mbs.diagnosis.gather import Evidence, gather
 from hdrive_mbs.diagnosis.input_checks import check_records, check_trials, not_compared
 from hdrive_mbs.diagnosis.journal import Journal
-from hdrive_mbs.diagnosis.locate import NOWHERE, Localiser
+from hdrive_mbs.diagnosis.locate import Localiser
 from hdrive_mbs.diagnosis.pictured import pictured
-from hdrive_mbs.diagnosis.result import Cause, Diagnosis, Place, Separation
+from hdrive_mbs.diagnosis.result import NOWHERE, Cause, Diagnosis, Place, Separation
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.diagnosis.suspects import Label

@@ -68,12 +68,17 @@ class Cause:
     parameters: tuple[Estimate, ...] = ()
 
 
+NOWHERE = "nowhere"
+"""Name, among places, for an unknown signal at none of them."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Place:
     """A place where an unknown force or error would explain residuals.
 
     at : name in the scene;  probability : among all places;  gain : log likelihood against none
     share : of the energy of the gap that a signal there can explain (0 to 1);  tied : places that the records cannot tell from it
+    parameter : nominal parameter of the place that explains the gap better, if it is off, than a signal there; empty if a signal does
     """
 
     at: str
@@ -81,6 +86,7 @@ class Place:
     gain: float
     share: float
     tied: tuple[str, ...] = ()
+    parameter: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

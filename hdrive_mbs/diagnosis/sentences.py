@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 
 from hdrive_mbs.diagnosis.readable import digits, interval, listed, named, percent, probability, with_unit
-from hdrive_mbs.diagnosis.result import VERDICTS, Cause, Diagnosis, DomainBin, Estimate, Place, Separation
+from hdrive_mbs.diagnosis.result import NOWHERE, VERDICTS, Cause, Diagnosis, DomainBin, Estimate, Place, Separation
 
 SEPARABLE = 25.0
 """Detectability from which two causes can be told apart."""
@@ -86,8 +86,16 @@ def _size(value: float) -> str:
 
 def where(place: Place) -> str:
     """What a force at a place would explain."""
-    text = f"{place.at}: probability {probability(place.probability)}; an unknown signal there explains {percent(place.share)} of the gap"
+    text = f"{place.at}: probability {probability(place.probability)}"
+    text += f"; {explaining(place)}" if place.at != NOWHERE else "; no signal at any place"
     return text + (f"; these records cannot tell it from {listed(place.tied, 'or')}" if place.tied else "")
+
+
+def explaining(place: Place) -> str:
+    """What a place would explain, and how."""
+    if place.parameter:
+        return f"{named(place.parameter)} off beyond its tolerance explains the gap better than an unknown signal there"
+    return f"an unknown signal there explains {percent(place.share)} of the gap"
 
 
 def moved(estimate: Estimate) -> float:

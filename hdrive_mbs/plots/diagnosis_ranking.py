@@ -7,8 +7,8 @@ import math
 import numpy as np
 from matplotlib.axes import Axes
 
-from hdrive_mbs.diagnosis.readable import digits, percent, probability
-from hdrive_mbs.diagnosis.result import Diagnosis
+from hdrive_mbs.diagnosis.readable import digits, named, percent, probability
+from hdrive_mbs.diagnosis.result import NOWHERE, Diagnosis, Place
 from hdrive_mbs.diagnosis.sentences import label
 from hdrive_mbs.plots.diagnosis_look import WIDTH, needed
 from hdrive_mbs.plots.look import COLOURS, GREY, given_or_new, house_look, readable
@@ -42,12 +42,18 @@ def plot_places(diagnosis: Diagnosis, ax: Axes | None = None, *, top: int = TOP)
     shown = diagnosis.where[:top]
     tied = set(shown[0].tied)
     colours = [COLOURS[0], *(PALE if place.at in tied else "#BBBBBB" for place in shown[1:])]
-    notes = [f"{probability(place.probability)}, explains {percent(place.share)}" for place in shown]
+    notes = [", ".join([probability(place.probability), *_explains(place)]) for place in shown]
     with house_look():
         ax = given_or_new(ax, WIDTH, 1.0 + 0.36 * len(shown))
         _bars(ax, [place.at for place in shown], [place.probability for place in shown], notes, colours)
         ax.set_xlabel("probability among all places" + ("\n(pale: cannot be told from the first)" if tied else ""))
     return ax
+
+
+def _explains(place: Place) -> list[str]:
+    if place.at == NOWHERE:
+        return []
+    return [f"by {named(place.parameter)}" if place.parameter else f"explains {percent(place.share)}"]
 
 
 def _bars(ax: Axes, names: list[str], values: list[float], notes: list[str], colours: list[str]) -> None:

@@ -8,7 +8,7 @@ from html import escape
 from pathlib import Path
 
 from hdrive_mbs.diagnosis import report_rows, sentences
-from hdrive_mbs.diagnosis.readable import digits, named, percent, probability
+from hdrive_mbs.diagnosis.readable import digits, named, probability
 from hdrive_mbs.diagnosis.result import Diagnosis, Trace
 from hdrive_mbs.plots.diagnosis import worst_first
 from hdrive_mbs.plots.diagnosis_domain import plot_domain, plot_orders
@@ -114,7 +114,7 @@ def _where(diagnosis: Diagnosis) -> Iterator[str]:
     yield "<h2>Where it lies</h2>"
     if diagnosis.where:
         first = diagnosis.where[0]
-        text = f"Bars: {first.at} has probability {probability(first.probability)} and explains {percent(first.share)} of the gap."
+        text = f"Bars: {sentences.where(first)}."
         yield figure(plot_places(diagnosis), text, "An unknown signal at one place, no law assumed.")
     for force in diagnosis.forces:
         axes = plot_force(diagnosis, at=force.at, way=force.way, record=force.record)

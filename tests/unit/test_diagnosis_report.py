@@ -13,11 +13,23 @@ import pytest
 from hdrive_mbs.diagnosis import readable, sentences
 from hdrive_mbs.diagnosis.report_json import VERSION, read_report_json, report_document, write_report_json
 from hdrive_mbs.diagnosis.report_text import report_text, write_report
-from hdrive_mbs.diagnosis.result import Diagnosis, DomainBin, Estimate
+from hdrive_mbs.diagnosis.result import NOWHERE, Diagnosis, DomainBin, Estimate, Place
 from hdrive_mbs.errors import FileFormatError
 from hdrive_mbs.scene_file import scene_from_dict
 from tests.unit import diagnosis_samples
 from tests.unit.diagnosis_samples import NAN, SAMPLES
+
+
+def test_a_place_says_what_explains_the_gap_there() -> None:
+    said = [
+        sentences.where(Place(at=at, probability=0.5, gain=9.0, share=share, parameter=parameter))
+        for at, share, parameter in (("load", 0.48, ""), ("gear", 0.0, "gear stiffness"), (NOWHERE, 0.0, ""))
+    ]
+    assert said == [
+        "load: probability 0.50; an unknown signal there explains 48 % of the gap",
+        "gear: probability 0.50; gear stiffness off beyond its tolerance explains the gap better than an unknown signal there",
+        "nowhere: probability 0.50; no signal at any place",
+    ]
 
 
 @pytest.mark.parametrize(

@@ -10,11 +10,11 @@ import pytest
 
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
-from hdrive_mbs.diagnosis.locate import NOWHERE, Localiser, locate
+from hdrive_mbs.diagnosis.locate import Localiser, locate
 from hdrive_mbs.diagnosis.locate.motion import KnownForce, columns_of
 from hdrive_mbs.diagnosis.locate.spectra import joined, windowed
 from hdrive_mbs.diagnosis.measured import Measured
-from hdrive_mbs.diagnosis.result import Place
+from hdrive_mbs.diagnosis.result import NOWHERE, Place
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.unknowns import Factor
@@ -140,6 +140,7 @@ def test_a_parameter_far_beyond_its_tolerance_points_at_its_part() -> None:
     best = locate(simulator, fitted(simulator, z))[0]
     assert best.at == "load"
     assert best.probability > 0.9
+    assert best.parameter == "load_inertia"
 
 
 def test_an_error_of_a_sensor_is_found_at_the_sensor() -> None:

@@ -13,10 +13,11 @@ from scipy.linalg import expm
 from hdrive_mbs.diagnosis.diagnose import localised_about
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
-from hdrive_mbs.diagnosis.locate import NOWHERE, Localiser
+from hdrive_mbs.diagnosis.locate import Localiser
 from hdrive_mbs.diagnosis.locate.motion import KnownForce, columns_of
 from hdrive_mbs.diagnosis.locate.observer import Observer, observer
 from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.result import NOWHERE
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.unknowns import Factor

@@ -14,6 +14,6 @@ latent_force  the course of the force
 """
 
 from hdrive_mbs.diagnosis.locate.latent_force import LatentForce
-from hdrive_mbs.diagnosis.locate.locate import NOWHERE, Localiser, locate
+from hdrive_mbs.diagnosis.locate.locate import Localiser, locate
 
-__all__ = ["NOWHERE", "LatentForce", "Localiser", "locate"]
+__all__ = ["LatentForce", "Localiser", "locate"]

@@ -17,7 +17,7 @@ from hdrive_mbs.diagnosis.locate.latent_force import LatentForce, by_direction, 
 from hdrive_mbs.diagnosis.locate.likelihood import Explained, Likelihood, directions
 from hdrive_mbs.diagnosis.locate.motion import KnownForce
 from hdrive_mbs.diagnosis.locate.spectra import joined
-from hdrive_mbs.diagnosis.result import Place
+from hdrive_mbs.diagnosis.result import NOWHERE, Place
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import AnalysisError, unknown_place
@@ -25,8 +25,6 @@ from hdrive_mbs.errors import AnalysisError, unknown_place
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-NOWHERE = "nowhere"
-"""Stands for no force at all, among the places."""
 LOOSE = 10.0
 """Times its prior standard deviation that a parameter of a place may be off."""
 BLOCKS = 12
@@ -53,7 +51,8 @@ UNCLEAR = 3.0
 class _Tried:
     """A source at a place with what its force explains.
 
-    gain : log likelihood against nowhere, or what loosening a parameter of the place gains, if that is more (``loose``)
+    gain : log likelihood against nowhere, or what loosening a parameter of the place gains, if that is more
+    loose : that parameter; empty if a force gains more
     """
 
     name: str
@@ -61,7 +60,7 @@ class _Tried:
     about: About
     found: Explained
     gain: float
-    loose: bool = False
+    loose: str = ""
 
 
 class Localiser:
@@ -114,7 +113,10 @@ class Localiser:
             tried += self._tried_about(about, about.likelihood.of(None, np.zeros(len(about.likelihood.at)), rounds=0))
             tried = _one_a_place(tried)
         tried = self._closer(tried)
-        tried = [replace(item, gain=loose[item.at], loose=True) if loose.get(item.at, -math.inf) > item.gain else item for item in tried]
+        for k, item in enumerate(tried):
+            gain, parameter = loose.get(item.at, (-math.inf, ""))
+            if gain > item.gain:
+                tried[k] = replace(item, gain=gain, loose=parameter)
         return sorted(tried, key=lambda item: -item.gain)
 
     def _tried_about(self, about: About, nowhere: Explained) -> list[_Tried]:
@@ -197,19 +199,19 @@ class Localiser:
         before = there.likelihood
         return replace(there, likelihood=Likelihood(there.spectra, before.at, before.precision))
 
-    def _loosened(self) -> dict[str, float]:
-        """Place -> gain of letting the one of its parameters loose that gains most, any of all parameters being as probable.
+    def _loosened(self) -> dict[str, tuple[float, str]]:
+        """Place -> gain of letting the one of its parameters loose that gains most, and its name, any of all being as probable.
 
         Of 15 right parameters one lies beyond 3 standard deviations every 25th time.
         """
-        found: dict[str, float] = {}
+        found: dict[str, tuple[float, str]] = {}
         many = math.log(max(self._hypothesis.nominal_size, 1))
         for k, unknown in enumerate(self._hypothesis.unknowns[: self._hypothesis.nominal_size]):
             assert isinstance(unknown, Factor)
             if unknown.wide == 1.0:
                 gain = self._about.likelihood.loosened(self._nowhere, k, LOOSE) - many
                 for owner in {self._owner(path) for path in unknown.nominal}:
-                    found[owner] = max(gain, found.get(owner, -math.inf))
+                    found[owner] = max((gain, unknown.name), found.get(owner, (-math.inf, "")))
         return found
 
     def _owner(self, path: str) -> str:
@@ -239,8 +241,9 @@ class Localiser:
         tied = {item.at: tuple(other.at for other in close if other is not item and self._alike(item, other)) for item in close}
         made = [Place(at=NOWHERE, probability=chances[NOWHERE], gain=0.0, share=0.0)]
         for item in self._tried:
-            share = self._share(item)
-            made.append(Place(at=item.at, probability=chances[item.at], gain=item.gain, share=share, tied=tied.get(item.at, ())))
+            chance, others = chances[item.at], tied.get(item.at, ())
+            place = Place(at=item.at, probability=chance, gain=item.gain, share=self._share(item), tied=others, parameter=item.loose)
+            made.append(place)
         return tuple(sorted(made, key=lambda place: (-place.probability, -place.gain)))
 
     @property
@@ -298,7 +301,7 @@ class Localiser:
     def _alike(self, one: _Tried, other: _Tried) -> bool:
         """Whether a place explains nearly all of what another explains, weighted like the likelihood."""
         if one.loose or other.loose:
-            return one.loose and other.loose
+            return bool(one.loose and other.loose)
         total = shared = 0.0
         for k, fit in enumerate(one.found.fits):
             mine, yours = self._about.transfer(one.name, k), self._about.transfer(other.name, k)
