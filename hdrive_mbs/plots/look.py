@@ -87,7 +87,12 @@ def number(value: float) -> str:
 
 def unit_text(unit: str) -> str:
     """``N m s/rad`` with dots, ``rad/s^2`` with a raised 2."""
-    return unit.replace("^2", "²").replace("^3", "³").replace(" ", "\u2009")
+    return raised(unit).replace(" ", "\u2009")
+
+
+def raised(text: str) -> str:
+    """Powers of units raised: ``rad/s^2`` with a small 2."""
+    return text.replace("^2", "²").replace("^3", "³")
 
 
 def other_unit(factor: float) -> tuple[Callable[[npt.ArrayLike], Any], Callable[[npt.ArrayLike], Any]]:

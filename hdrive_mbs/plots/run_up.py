@@ -14,7 +14,7 @@ from hdrive_mbs.analysis.whirl.rotor_places import spin_ratios
 from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.lengths import shown_unit
-from hdrive_mbs.plots.look import GREY, house_look, legend_above, new_figure, number, other_unit, readable, style
+from hdrive_mbs.plots.look import GREY, house_look, legend_above, new_figure, number, other_unit, raised, readable, style
 from hdrive_mbs.plots.thinning import thinned
 
 PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8}
@@ -71,7 +71,7 @@ def plot_run_up(
         figure.legend(list(named.values()), list(named), loc="outside lower left", ncols=3)
         if result.scene is not None:
             said = result.status.removeprefix("complete").lstrip("; ")
-            note = "\n" + textwrap.fill(said, 92) if said else ""
+            note = "\n" + textwrap.fill(raised(said), 92) if said else ""
             figure.suptitle(f"{result.scene.name}: {number(result.final_speed)}\u2009rad/s at the end{note}", x=0.01, ha="left")
     return first
 

@@ -474,6 +474,17 @@ def test_the_status_says_what_the_run_did_not_reach() -> None:
     assert "the amplitude of disc is largest at the very end: give a longer duration" in run.status
 
 
+def test_the_status_says_that_a_stiffening_bearing_has_not_let_the_line_through() -> None:
+    # k + 3/4 k_3 r^2 = m w^2 on the backbone: at 400 rad/s r = 0.89 mm and the damping allows 3.2 mm
+    stiffening = hm.PowerBearing.isotropic(
+        radial=STIFFNESS, damping=DAMPING, axial=1e5, axial_damping=10.0, tilt=5e3, tilt_damping=0.5, power_radial=2e11
+    )
+    drive = holding(400.0, 0.02)
+    held, through = (hm.run_up(jeffcott(drive, law), 4.0).status for law in (stiffening, support()))
+    assert "though the speed is above the critical speed of 316.23 rad/s" in held
+    assert through == "complete"
+
+
 def test_a_cancelled_run_returns_what_it_has() -> None:
     cancel = threading.Event()
     cancel.set()

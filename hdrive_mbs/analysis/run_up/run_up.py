@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from hdrive_mbs.analysis.run_up.rest_positions import FreeLine, RestPositions, without_drive
-from hdrive_mbs.analysis.run_up.run_up_figures import LAST_PART, LineFigures, line_figures
+from hdrive_mbs.analysis.run_up.run_up_figures import LineFigures, line_figures
 from hdrive_mbs.analysis.run_up.run_up_start import Start, oil_films, starts
+from hdrive_mbs.analysis.run_up.run_up_status import status
 from hdrive_mbs.analysis.run_up.run_up_step import NEAR, choose_step, fastest_speeds, reference_speed
 from hdrive_mbs.analysis.run_up.speed_peaks import SpeedPeak
-from hdrive_mbs.analysis.run_up.torque_balance import TorqueBalance
 from hdrive_mbs.analysis.time_response import Response, simulate
 from hdrive_mbs.analysis.unbalance.synchronous_whirl import CriticalSpeed, critical_speeds
 from hdrive_mbs.analysis.whirl.rotor_places import reference_shaft, rotor_masses, spin_ratios
@@ -25,9 +25,6 @@ from hdrive_mbs.network.network import Network
 from hdrive_mbs.network.rigid_mass import NOTHING, RigidMass
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray
-
-STEADY = 0.01
-"""Largest change of speed or amplitude over a tenth of the run, at its end, that counts as steady."""
 
 FALLEN = 0.01
 """A coast-down that loses less than this share of its speed has nothing that brakes it."""
@@ -304,7 +301,7 @@ def _result(
     fields["units"] = {**response.units, **dict.fromkeys(added, "m")}
     fields["docs"] = {**response.docs, **{name: doc for name, (_, doc) in added.items()}}
     fields["settings"] = {**response.settings, **settings}
-    fields["status"] = _status(response, figures, criticals, notes)
+    fields["status"] = status(response, figures, criticals, notes)
     return RunUp(
         **fields,
         rotors=tuple(rotors),
@@ -328,32 +325,3 @@ def _result(
         static_deflection=static.table,
         peak_error=dict(errors),
     )
-
-
-def _status(response: Response, figures: LineFigures, criticals: Sequence[CriticalSpeed], notes: Sequence[str]) -> str:
-    if response.status != "complete":
-        return response.status
-    said, end = list(notes), float(response.times[-1])
-    if figures.balance is not None and figures.captured:
-        said.insert(0, _captured(figures.balance, [item.speed for item in criticals]))
-    elif abs(figures.final_acceleration) * LAST_PART * end > STEADY * abs(figures.final_speed):
-        said.append(f"the speed still changes, by {figures.final_acceleration:.3g} rad/s^2 at the end")
-    before = int(np.searchsorted(response.times, (1.0 - LAST_PART) * end, side="right"))
-    late = [
-        name
-        for name, rotor in figures.rotors.items()
-        if rotor.centre.time >= end * (1.0 - 1e-9)
-        and float(np.max(rotor.channels["whirl"][0][:before])) < (1.0 - STEADY) * rotor.centre.amplitude
-    ]
-    if late:
-        said.append(f"the amplitude of {', '.join(late)} is largest at the very end: give a longer duration")
-    return "; ".join(["complete", *said])
-
-
-def _captured(balance: TorqueBalance, criticals: Sequence[float]) -> str:
-    text = f"captured: the speed stays at {balance.speed:.5g} rad/s"
-    if criticals:
-        near = min(criticals, key=lambda speed: abs(speed - abs(balance.speed)))
-        text += f", {100.0 * abs(balance.speed) / near:.4g} % of the critical speed of {near:.5g} rad/s"
-    drive = f"run up to {balance.driven_speed:.4g} rad/s" if math.isfinite(balance.driven_speed) else "go on running up"
-    return f"{text}, where whirl takes {balance.whirl:.3g} of {balance.applied:.3g} N m; without whirl it would {drive}"
