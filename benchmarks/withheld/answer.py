@@ -7,7 +7,7 @@ from typing import Any
 
 from benchmarks.withheld.finding import Claimed, Finding
 from benchmarks.withheld.names import Label, Name, Names, verdict_of
-from hdrive_mbs.diagnosis.locate import NOWHERE
+from hdrive_mbs.diagnosis.result import NOWHERE
 
 WORDS = ("none", "unknown")
 """Entries of a ranking that are no causes."""
