@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from benchmarks.withheld.names import Names, names_of
-from hdrive_mbs.diagnosis.locate import NOWHERE
+from hdrive_mbs.diagnosis.result import NOWHERE
 
 OUTCOMES = ("right", "tied", "wrong", "not visible", "doubted", "not trusted, right", "not trusted, wrong", "kept", "false alarm")
 """right, tied, wrong: a place was named;  not visible: there was a cause and no place was named;  doubted: nor is nowhere relied on
