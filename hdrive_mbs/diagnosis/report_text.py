@@ -31,7 +31,7 @@ def _lines(diagnosis: Diagnosis) -> Iterator[str]:
     yield from _heading(sentences.title(diagnosis), "=")
     yield ""
     yield from _wrapped(f"{sentences.verdict(diagnosis)} {sentences.confidence(diagnosis)}", indent="")
-    if text := sentences.ambiguity(diagnosis):
+    for text in filter(None, (sentences.ambiguity(diagnosis), sentences.inexact(diagnosis))):
         yield from _wrapped(text, indent="")
     for cause in diagnosis.causes:
         yield from _cause(cause)

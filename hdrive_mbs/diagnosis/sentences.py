@@ -12,6 +12,8 @@ SEPARABLE = 25.0
 """Detectability from which two causes can be told apart."""
 EVEN = 1.5
 """A bin with less than this many times its share of the samples stands out from nothing."""
+REST = 1.26
+"""Times the noise (root mean square) from which what a claim leaves is spoken of: a mean square of FITS in verdict.py."""
 MOVED = 1.0
 """Standard deviations of its tolerance from which a parameter is said to have moved."""
 
@@ -57,6 +59,20 @@ def ambiguity(diagnosis: Diagnosis) -> str:
         return ""
     claimed = listed([label(cause.effect, cause.at) for cause in diagnosis.causes]) if own else "the claim"
     return f"These records cannot tell {claimed} from {listed(others, 'or')}."
+
+
+def inexact(diagnosis: Diagnosis) -> str:
+    """What a claim leaves that is not noise; empty where it leaves noise alone."""
+    if not diagnosis.causes or not diagnosis.gaps:
+        return ""
+    gap = diagnosis.gap
+    if not gap.effect.value > REST * gap.floor:
+        return ""
+    what = "the law" if len(diagnosis.causes) == 1 else "one of the laws"
+    return (
+        f"What is claimed leaves {digits(gap.effect.value / gap.floor, 3)} times the noise: {what} is not exact,"
+        " or there is another cause beside it. Look at what is left before you trust the identified values."
+    )
 
 
 def gap_sentences(diagnosis: Diagnosis) -> tuple[str, ...]:

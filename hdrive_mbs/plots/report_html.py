@@ -37,9 +37,9 @@ def write_report_html(diagnosis: Diagnosis, path: str | os.PathLike[str]) -> Pat
 
 def report_body(diagnosis: Diagnosis) -> Iterator[str]:
     """Everything below the title: verdict, causes, gap, curves, place, ranking, parameters; headings of the second level."""
-    said = (sentences.verdict(diagnosis), sentences.confidence(diagnosis), sentences.ambiguity(diagnosis))
+    said = (sentences.verdict, sentences.confidence, sentences.ambiguity, sentences.inexact)
     kind = escape(diagnosis.verdict, quote=True)
-    yield f'<div class="verdict {kind}">{"".join(paragraphs(text for text in said if text))}</div>'
+    yield f'<div class="verdict {kind}">{"".join(paragraphs(text for say in said if (text := say(diagnosis))))}</div>'
     yield from _causes(diagnosis)
     yield from _gap(diagnosis)
     yield from _curves(diagnosis)

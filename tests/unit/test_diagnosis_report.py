@@ -20,6 +20,15 @@ from tests.unit import diagnosis_samples
 from tests.unit.diagnosis_samples import NAN, SAMPLES
 
 
+def test_a_claim_that_leaves_more_than_noise_says_so() -> None:
+    found = diagnosis_samples.effect()
+    for rest, said in ((1.2, ""), (27.04, "What is claimed leaves 27.0 times the noise: the law is not exact")):
+        again = dataclasses.replace(found, gaps=diagnosis_samples.gaps(34.2, 28.1, rest))
+        assert sentences.inexact(again).startswith(said)
+        assert bool(sentences.inexact(again)) == bool(said)
+        assert ("not exact" in report_text(again)) == bool(said)
+
+
 def test_a_place_says_what_explains_the_gap_there() -> None:
     said = [
         sentences.where(Place(at=at, probability=0.5, gain=9.0, share=share, parameter=parameter))

@@ -167,6 +167,33 @@ def test_of_a_faint_gap_an_effect_has_to_take_half(simulator: Simulator, null: f
     assert (max(claim.probabilities, key=lambda label: claim.probabilities[label])[0] == "unknown") == (kind == "unknown")
 
 
+@pytest.mark.parametrize(
+    ("single", "pair", "kind", "causes"),
+    [
+        (370.0, None, "effect", 1),  # 0.97 of a large gap, though less than half of its logarithm
+        (7000.0, None, "unknown", 0),
+        (7000.0, 1900.0, "unknown", 0),  # two laws together bend far
+        (370.0, 100.0, "effect", 1),  # no second cause for what a law leaves that is not exact
+    ],
+)
+def test_most_of_a_large_gap_is_enough_for_a_single_cause(
+    simulator: Simulator, single: float, pair: float | None, kind: str, causes: int
+) -> None:
+    factors = factors_of(BENCH)
+    [second] = suspects(Hypothesis(factors), {"load_inertia": ("load_inertia",)}, [])
+    drag = Hypothesis(factors, (Added(hm.ViscousDrag(coefficient=0.01), "load", "drag"),))
+    both = Hypothesis(factors, drag.added, second.first[0].loose)
+    one, two = (
+        dataclasses.replace(fit(simulator, item, item.start(), steps=0), chi_fit=chi, chi_held=chi)
+        for item, chi in ((drag, single), (both, pair or 1.0))
+    )
+    effect = Found(Suspect(("viscous_drag", "load"), "ViscousDrag", (drag,), (drag,)), one, 1e5)
+    claim = judge(14000.0, [effect], None if pair is None else Found(second, two, 1.05e5))
+    assert claim.kind == kind
+    claimed = [label for label, chance in claim.probabilities.items() if label[0] not in ("none", "unknown") and chance > 0.4]
+    assert len(claimed) == causes
+
+
 def test_a_parameter_is_preferred_to_an_effect_that_does_hardly_better(simulator: Simulator) -> None:
     factors = factors_of(BENCH)
     [inertia] = suspects(Hypothesis(factors), {"load_inertia": ("load_inertia",)}, [])
