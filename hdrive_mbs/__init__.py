@@ -96,6 +96,8 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "loads.table": ("TableTorque",),
     "loads.torque_speed": ("TorqueSpeedLoad",),
     "loads.quadratic": ("QuadraticLoad",),
+    "effects.coated_rub": ("CoatedRub",),
+    "effects.damped_rub": ("DampedRub",),
     "effects.effect": (
         "Effect", "TorqueEffect", "TwistEffect", "LawEffect", "MemoryTorqueEffect", "MemoryTwistEffect",
     ),
@@ -103,6 +105,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.coulomb_stribeck_friction": ("CoulombStribeckFriction",),
     "effects.coupling_backlash": ("CouplingBacklash",),
     "effects.eccentric_load": ("EccentricLoad",),
+    "effects.hertzian_rub": ("HertzianRub",),
     "effects.kinematic_error": ("KinematicError",),
     "effects.lugre_friction": ("LuGreFriction",),
     "effects.maxwell_slip_hysteresis": ("MaxwellSlipHysteresis",),

@@ -107,6 +107,7 @@ from hdrive_mbs.effects.bearing_hardening import BearingHardening as BearingHard
 from hdrive_mbs.effects.bearing_stiffness_change import BearingStiffnessChange as BearingStiffnessChange
 from hdrive_mbs.effects.bouc_wen_hysteresis import BoucWenHysteresis as BoucWenHysteresis
 from hdrive_mbs.effects.breathing_crack import BreathingCrack as BreathingCrack
+from hdrive_mbs.effects.coated_rub import CoatedRub as CoatedRub
 from hdrive_mbs.effects.cogging import Cogging as Cogging
 from hdrive_mbs.effects.coulomb_stribeck_friction import CoulombStribeckFriction as CoulombStribeckFriction
 from hdrive_mbs.effects.coupling_backlash import CouplingBacklash as CouplingBacklash
@@ -114,6 +115,7 @@ from hdrive_mbs.effects.crack_effect import CrackEffect as CrackEffect
 from hdrive_mbs.effects.dahl_friction import DahlFriction as DahlFriction
 from hdrive_mbs.effects.dahl_hysteresis import DahlHysteresis as DahlHysteresis
 from hdrive_mbs.effects.damped_clearance import DampedClearance as DampedClearance
+from hdrive_mbs.effects.damped_rub import DampedRub as DampedRub
 from hdrive_mbs.effects.dynamic_unbalance import DynamicUnbalance as DynamicUnbalance
 from hdrive_mbs.effects.eccentric_load import EccentricLoad as EccentricLoad
 from hdrive_mbs.effects.effect import Effect as Effect
@@ -129,6 +131,7 @@ from hdrive_mbs.effects.flexible_inertia import FlexibleInertia as FlexibleInert
 from hdrive_mbs.effects.ground_vibration import GroundVibration as GroundVibration
 from hdrive_mbs.effects.harmonic_kinematic_error import HarmonicKinematicError as HarmonicKinematicError
 from hdrive_mbs.effects.hertzian_clearance import HertzianClearance as HertzianClearance
+from hdrive_mbs.effects.hertzian_rub import HertzianRub as HertzianRub
 from hdrive_mbs.effects.hidden_mode import HiddenMode as HiddenMode
 from hdrive_mbs.effects.hidden_mode_support import HiddenModeSupport as HiddenModeSupport
 from hdrive_mbs.effects.inner_race_pass import InnerRacePass as InnerRacePass

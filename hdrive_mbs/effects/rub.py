@@ -47,6 +47,14 @@ class Rub(LateralEffect):
     )
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"gap": (1e-5, 3e-5, 1e-4, 2e-4, 3e-4, 5e-4), "stiffness": (1e6,)}
     decisive: ClassVar[tuple[str, ...]] = ("gap",)
+    leads: ClassVar[bool] = True
+
+    def normal(self, depth: Value, rate: Value) -> Value:
+        """Force of the wall at a depth that grows at a rate [N], before what would pull is cut off."""
+        wall = self.stiffness * depth
+        if self.exponent != 1.0:
+            wall = wall * (depth / self.reference_depth) ** (self.exponent - 1.0)
+        return wall if self.damping == 0.0 else wall + self.damping * rate
 
     def _contact(self, speed: Value, x: Value, y: Value, x_rate: Value, y_rate: Value) -> tuple[Value, Value, Value, Value]:
         """Normal force, friction force along e_t, and e_r."""
@@ -54,13 +62,7 @@ class Rub(LateralEffect):
         square = x * x + y * y
         r = np.sqrt(np.maximum(square, self.gap**2))
         c, s = x / r, y / r
-        depth = r - self.gap
-        wall = self.stiffness * depth
-        if self.exponent != 1.0:
-            wall = wall * (depth / self.reference_depth) ** (self.exponent - 1.0)
-        if self.damping != 0.0:
-            wall = np.maximum(wall + self.damping * (c * x_rate + s * y_rate), 0.0)
-        normal = np.where(square > self.gap**2, wall, 0.0)
+        normal = np.where(square > self.gap**2, np.maximum(self.normal(r - self.gap, c * x_rate + s * y_rate), 0.0), 0.0)
         sliding = self.radius * speed + c * y_rate - s * x_rate
         return normal, self.friction * np.tanh(sliding / self.smoothing_speed) * normal, c, s
 

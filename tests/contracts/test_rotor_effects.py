@@ -74,6 +74,13 @@ EXAMPLES = {
         Example(
             hm.Rub(gap=1e-5, stiffness=1e5, friction=0.2, radius=0.05, centre_x=1e-5, centre_y=-5e-6, exponent=1.5), "disc", ("stiffness",)
         ),
+        Example(hm.DampedRub(gap=1e-5, stiffness=1e5, damping=30.0, friction=0.2, radius=0.05), "disc", ("stiffness", "damping")),
+        Example(hm.HertzianRub(gap=1e-5, stiffness=1e5, loss=2.0, friction=0.2, radius=0.05), "disc", ("stiffness",)),
+        Example(
+            hm.CoatedRub(gap=1e-5, stiffness=1e5, damping=30.0, coat_depth=1e-5, friction=0.2, radius=0.05),
+            "disc",
+            ("stiffness", "damping"),
+        ),
     )
 }
 

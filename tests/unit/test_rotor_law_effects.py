@@ -604,7 +604,9 @@ def test_laws_of_the_shaft_on_the_engine_equal_the_plain_functions() -> None:
 RUB: dict[str, float] = {"gap": 2e-5, "stiffness": 2e6, "friction": 0.15, "radius": 0.05, "centre_x": 3e-6, "centre_y": -8e-6}
 
 
-def rub_force(z: complex, v: complex, spin: float, damping: float = 0.0, exponent: float = 1.0) -> tuple[complex, float]:
+def rub_force(
+    z: complex, v: complex, spin: float, damping: float = 0.0, exponent: float = 1.0, loss: float = 0.0, coat_depth: float = math.inf
+) -> tuple[complex, float]:
     """Force on the rotor and torque on its spin, in polar coordinates about the centre of the ring."""
     arm = z - complex(RUB["centre_x"], RUB["centre_y"])
     depth = abs(arm) - RUB["gap"]
@@ -612,15 +614,26 @@ def rub_force(z: complex, v: complex, spin: float, damping: float = 0.0, exponen
         return 0.0, 0.0
     out = arm / abs(arm)
     local = v / out
-    normal = max(RUB["stiffness"] * depth * (depth / 1e-5) ** (exponent - 1.0) + damping * local.real, 0.0)
+    wall = RUB["stiffness"] * depth * (depth / 1e-5) ** (exponent - 1.0) / (1.0 + depth / coat_depth)
+    normal = max(wall * (1.0 + loss * local.real) + damping * local.real, 0.0)
     friction = RUB["friction"] * normal * math.tanh((local.imag + RUB["radius"] * spin) / 0.05)
     return -(normal + 1j * friction) * out, -RUB["radius"] * friction
 
 
-@pytest.mark.parametrize("fields", [{}, {"damping": 50.0}, {"exponent": 1.5}], ids=["linear", "damped", "Hertz"])
-def test_rubbing_rotor_moves_as_scipy_says(fields: dict[str, float]) -> None:
+@pytest.mark.parametrize(
+    ("law", "fields"),
+    [
+        (hm.Rub, {}),
+        (hm.Rub, {"damping": 50.0}),
+        (hm.Rub, {"exponent": 1.5}),
+        (hm.DampedRub, {"damping": 50.0}),
+        (hm.HertzianRub, {"exponent": 1.5, "loss": 1.5}),
+        (hm.CoatedRub, {"damping": 50.0, "coat_depth": 6e-5}),
+    ],
+)
+def test_rubbing_rotor_moves_as_scipy_says(law: type[hm.Rub], fields: dict[str, float]) -> None:
     speed = 600.0
-    scene = jeffcott(speed=speed, weight=True, eccentricity=ECCENTRICITY).with_effect(hm.Rub(**RUB, **fields), at="disc")
+    scene = jeffcott(speed=speed, weight=True, eccentricity=ECCENTRICITY).with_effect(law(**RUB, **fields), at="disc")
     response = run(scene, 0.06, 5e-6)
     push = unbalance(speed)
 

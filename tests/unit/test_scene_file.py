@@ -192,6 +192,9 @@ ROTOR_EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.InternalDamping(time=1e-6), "shaft.element_1"),
     (hm.ShaftStiffnessAsymmetry(asymmetry=0.01, angle=0.3), "shaft.element_1"),
     (hm.Rub(gap=1e-4, stiffness=1e6, friction=0.1, radius=0.05), "rotor"),
+    (hm.DampedRub(gap=1e-4, stiffness=1e6, damping=100.0, friction=0.1, radius=0.05), "rotor"),
+    (hm.HertzianRub(gap=1e-4, stiffness=1e6, loss=0.5, friction=0.1, radius=0.05), "rotor"),
+    (hm.CoatedRub(gap=1e-4, stiffness=1e6, damping=100.0, coat_depth=5e-5, friction=0.1, radius=0.05), "rotor"),
 )
 
 

@@ -77,6 +77,23 @@ CASES: dict[str, tuple[str, int, tuple[float, ...], Effect, str]] = {
         hm.Rub(gap=1.2e-4, centre_x=-2e-6, centre_y=-1.8e-5, stiffness=3e6, damping=200.0, friction=0.1, radius=0.06),
         "rotor_1",
     ),
+    # the plant's friction that falls with the sliding speed is kept out by its last number
+    "rub with Hertz's contact": (
+        "rub",
+        0,
+        (2, 1.2e-4, -2e-6, -1.8e-5, 3e6 / math.sqrt(1e-5), 0.8, 0.1, 0.05, 0.06, 1.0, 1),
+        hm.HertzianRub(gap=1.2e-4, centre_x=-2e-6, centre_y=-1.8e-5, stiffness=3e6, loss=0.8, friction=0.1, radius=0.06),
+        "rotor_1",
+    ),
+    "rub on a coat": (
+        "rub",
+        0,
+        (3, 1.2e-4, -2e-6, -1.8e-5, 3e6, 200.0, 0.1, 0.05, 0.06, 4e-5, 1),
+        hm.CoatedRub(
+            gap=1.2e-4, centre_x=-2e-6, centre_y=-1.8e-5, stiffness=3e6, damping=200.0, coat_depth=4e-5, friction=0.1, radius=0.06
+        ),
+        "rotor_1",
+    ),
 }
 
 

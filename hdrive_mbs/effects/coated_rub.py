@@ -1,0 +1,31 @@
+"""A rotor that cuts into a soft coat."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hdrive_mbs.effects.rub import Rub
+from hdrive_mbs.expression import Value
+from hdrive_mbs.quantities import parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class CoatedRub(Rub):
+    """Rub on an abradable coat that gives way.
+
+    N = max(k p/(1 + p/p_c) + d p', 0)
+
+    The coat bears k p_c at most, as a material that is crushed or cut does.
+
+    Source: our own, the simplest curve from a stiffness to a limit.  Leaves out that a cut coat does not come back, and what Rub
+    leaves out.
+    """
+
+    coat_depth: float = parameter("m", "p_c, depth at which the coat bears half of its most", above=0.0, high=0.1, typical=(1e-5, 3e-4))
+    damping: float = parameter("N s/m", "d of the wall", low=0.0, high=1e7, typical=(20.0, 5e3))
+
+    leads: ClassVar[bool] = False
+
+    def normal(self, depth: Value, rate: Value) -> Value:
+        return self.stiffness * depth / (1.0 + depth / self.coat_depth) + self.damping * rate

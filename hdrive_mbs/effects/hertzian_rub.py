@@ -1,0 +1,29 @@
+"""A rotor that touches a ring that stiffens with the depth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hdrive_mbs.effects.rub import Rub
+from hdrive_mbs.expression import Value
+from hdrive_mbs.quantities import parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class HertzianRub(Rub):
+    """Rub with a force that grows with a power of the depth, and a damping in proportion to it.
+
+    N = max(k p_0 (p/p_0)^n (1 + c p'), 0)
+
+    Source: Hertz, n = 3/2; damping after K. H. Hunt, F. R. E. Crossley, J. Applied Mechanics 42 (1975) 440.  The force has no
+    corner at the contact.  Leaves out the rest of what Rub leaves out; ``damping`` is not used.
+    """
+
+    exponent: float = parameter("1", "n", default=1.5, low=1.0, high=3.0)
+    loss: float = parameter("s/m", "c of the damping", low=0.0, high=100.0, typical=(0.02, 2.0))
+
+    leads: ClassVar[bool] = False
+
+    def normal(self, depth: Value, rate: Value) -> Value:
+        return self.stiffness * self.reference_depth * (depth / self.reference_depth) ** self.exponent * (1.0 + self.loss * rate)
