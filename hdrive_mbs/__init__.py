@@ -180,6 +180,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.ball_pass": ("BallPass",),
     "effects.ball_pass_harmonics": ("BallPassHarmonics",),
     "effects.inner_race_pass": ("InnerRacePass",),
+    "effects.inner_race_pulses": ("InnerRacePulses",),
     "effects.external_shock": ("ExternalShock",),
     "effects.ground_vibration": ("GroundVibration",),
     "effects.probe_runout": ("ProbeRunout",),

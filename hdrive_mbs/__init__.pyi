@@ -135,6 +135,7 @@ from hdrive_mbs.effects.hertzian_rub import HertzianRub as HertzianRub
 from hdrive_mbs.effects.hidden_mode import HiddenMode as HiddenMode
 from hdrive_mbs.effects.hidden_mode_support import HiddenModeSupport as HiddenModeSupport
 from hdrive_mbs.effects.inner_race_pass import InnerRacePass as InnerRacePass
+from hdrive_mbs.effects.inner_race_pulses import InnerRacePulses as InnerRacePulses
 from hdrive_mbs.effects.internal_damping import InternalDamping as InternalDamping
 from hdrive_mbs.effects.iwan_hysteresis import IwanHysteresis as IwanHysteresis
 from hdrive_mbs.effects.kinematic_error import KinematicError as KinematicError

@@ -10,8 +10,8 @@ import dataclasses
 import itertools
 from collections.abc import Mapping, Sequence
 
+from hdrive_mbs.diagnosis.force_orders import StandsOut
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
-from hdrive_mbs.diagnosis.periods import Periods
 from hdrive_mbs.errors import ParameterError
 
 MANY, FEW = 12, 2
@@ -26,7 +26,7 @@ def is_periodic(hypothesis: Hypothesis) -> bool:
     return bool(hypothesis.added and type(hypothesis.added[-1].effect).periodic)
 
 
-def begun_at(starts: Sequence[Hypothesis], periods: Periods) -> tuple[Hypothesis, ...]:
+def begun_at(starts: Sequence[Hypothesis], periods: StandsOut) -> tuple[Hypothesis, ...]:
     """The same starts with the periods of the effect that was added last at those that stand out; as they are where none do."""
     if not is_periodic(starts[0]):
         return tuple(starts)
@@ -45,7 +45,7 @@ def begun_at(starts: Sequence[Hypothesis], periods: Periods) -> tuple[Hypothesis
     return tuple(made)
 
 
-def widths_of(hypothesis: Hypothesis, periods: Periods) -> dict[str, float]:
+def widths_of(hypothesis: Hypothesis, periods: StandsOut) -> dict[str, float]:
     """What the records can tell apart of each period of the effect that was added last."""
     return {name: periods.width(over) for name, over in type(hypothesis.added[-1].effect).periodic.items()}
 

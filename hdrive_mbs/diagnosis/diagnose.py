@@ -176,7 +176,7 @@ def localised_about(evidence: Evidence) -> Fitted:
 def _located(evidence: Evidence, notes: list[str]) -> tuple[tuple[Place, ...], Localiser | None]:
     """Places of the gap, most probable first; a note where they cannot be found."""
     try:
-        localiser = Localiser(evidence.fine, localised_about(evidence))
+        localiser = evidence.place or Localiser(evidence.fine, localised_about(evidence))
         if localiser.doubt:
             notes.append(f"Place of the gap: {localiser.doubt}")
         return localiser.places(), localiser

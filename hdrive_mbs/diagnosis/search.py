@@ -12,6 +12,7 @@ from hdrive_mbs.diagnosis.beginnings import begun_at, beside, widths_of
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import beyond, enough, picked, spread_out, worth
 from hdrive_mbs.diagnosis.fit import Fitted, fit
+from hdrive_mbs.diagnosis.force_orders import StandsOut
 from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, restarts, unfinished
 from hdrive_mbs.diagnosis.ground import held, screen_from
 from hdrive_mbs.diagnosis.hops import settled
@@ -26,6 +27,7 @@ from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import AnalysisError
 
 Report = Callable[[str, int, int], None]
+Begin = Callable[[Simulator, Fitted], StandsOut]
 
 FAR = 1.3
 """Mean square of a fitted model above which everything is looked at with held parameters too (see ground.py)."""
@@ -48,6 +50,7 @@ class Depth:
     brief : labels that are looked at closer, at least and at most;  laws : of each that get joint steps (1: no closer look)
     picked : laws that get joint steps at most, from each ground
     kept : laws that are fitted on, at least and at most;  serious : how many of them to the end, besides all laws of the best label
+    again : whether all is done again with held parameters where it leaves something
     """
 
     brief: tuple[int, int] = (4, 10)
@@ -55,6 +58,7 @@ class Depth:
     picked: int = 10
     kept: tuple[int, int] = (3, 6)
     serious: int = 2
+    again: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +102,7 @@ def search(
     *,
     among: Collection[Label] | None = None,
     depth: Depth | None = None,
+    begin: Begin = Periods,
     report: Report | None = None,
 ) -> Search:
     """Look at everything that may be missing from a fitted model, and fit the best together with its parameters.
@@ -108,20 +113,21 @@ def search(
     What came out best is then tried with the other laws of its family and at all other places where it may sit, from the values
     found; in a shallow search only where it leaves much.
 
+    begin : of the simulator and a fitted model, what says where laws with a period begin
     among : labels that are looked at besides laws with a period, which show less beside something stronger; all if not given
     """
     how = depth or Depth()
-    work = _Work(team, simulator, report or (lambda stage, done, total: None), how)
+    work = _Work(team, simulator, report or (lambda stage, done, total: None), how, begin)
     everything = [item for item in suspects(base.hypothesis, groups, tried) if among is None or item.label in among or item.is_periodic]
     found, first = work.from_ground(base, base, everything)
     looks = {f"{suspect.law} at {suspect.label[1]}": cost for suspect, cost in first}
-    if how.laws > 1 and base.chi_fit > FAR and not any(item.fitted.chi_fit < enough(base, ENOUGH) for item in found):
+    if how.laws > 1 and how.again and base.chi_fit > FAR and not any(item.fitted.chi_fit < enough(base, ENOUGH) for item in found):
         likely = {suspect.label for suspect, _ in first[:SECOND_LOOKS]}
         more, _ = work.from_ground(held(simulator, base), base, [item for item in everything if item.label in likely or item.is_periodic])
         found = cheapest([*found, *more])
     if how.laws > 1 or (found and found[0].fitted.chi_fit > FAR):
         found = cheapest([*found, *work.fitted(other_laws(found, base, everything, enough(base, ENOUGH)), "trying other laws of the best")])
-        moved = elsewhere(found[0] if found else None, base, everything) + (restarts(found, FAR) if how.laws > 1 else [])
+        moved = elsewhere(found[0] if found else None, base, everything) + (restarts(found, FAR) if how.laws > 1 and how.again else [])
         found = cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
         found = cheapest([*found, *work.fitted(unfinished(found), "fitting the best")])
     if how.laws > 1 and base.chi_fit < NEAR:
@@ -139,6 +145,7 @@ class _Work:
     simulator: Simulator
     said: Report
     how: Depth
+    begin: Begin
 
     def from_ground(self, model: Fitted, base: Fitted, everything: Sequence[Suspect]) -> tuple[list[Found], list[tuple[Suspect, float]]]:
         """What is found from a model at some point, and the cost of the first looks, both best first."""
@@ -169,7 +176,7 @@ class _Work:
 
     def _begun(self, everything: Sequence[Suspect], model: Fitted) -> list[Suspect]:
         """Laws with a period begin at those that stand out in what the model leaves."""
-        periods = Periods(self.simulator, model)
+        periods = self.begin(self.simulator, model)
         return [_begun(item, periods) if item.is_periodic else item for item in everything]
 
     def fitted(self, asked: Sequence[tuple[Suspect, Task]], words: str) -> list[Found]:
@@ -187,7 +194,7 @@ class _Work:
         return sorted(looks, key=lambda pair: pair[1].cost)
 
 
-def _begun(item: Suspect, periods: Periods) -> Suspect:
+def _begun(item: Suspect, periods: StandsOut) -> Suspect:
     widths = widths_of(item.first[0], periods)
     return replace(item, first=begun_at(item.first, periods), all=begun_at(item.all, periods), widths=widths)
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from hdrive_mbs.effects.rub import Rub
 from hdrive_mbs.expression import Value
@@ -25,6 +26,8 @@ class CoatedRub(Rub):
     coat_depth: float = parameter("m", "p_c, depth at which the coat bears half of its most", above=0.0, high=0.1, typical=(1e-5, 3e-4))
     damping: float = parameter("N s/m", "d of the wall", low=0.0, high=1e7, typical=(20.0, 5e3))
 
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"gap": (1e-4,), "stiffness": (1e6,), "coat_depth": (5e-5,)}
+    decisive: ClassVar[tuple[str, ...]] = ()
     leads: ClassVar[bool] = False
 
     def normal(self, depth: Value, rate: Value) -> Value:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from hdrive_mbs.effects.rub import Rub
 from hdrive_mbs.quantities import parameter
@@ -21,4 +22,6 @@ class DampedRub(Rub):
 
     damping: float = parameter("N s/m", "d of the wall", low=0.0, high=1e7, typical=(20.0, 5e3))
 
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"gap": (1e-4,), "stiffness": (1e6,)}
+    decisive: ClassVar[tuple[str, ...]] = ()
     leads: ClassVar[bool] = False

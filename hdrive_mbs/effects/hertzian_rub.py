@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from hdrive_mbs.effects.rub import Rub
 from hdrive_mbs.expression import Value
@@ -23,6 +24,8 @@ class HertzianRub(Rub):
     exponent: float = parameter("1", "n", default=1.5, low=1.0, high=3.0)
     loss: float = parameter("s/m", "c of the damping", low=0.0, high=100.0, typical=(0.02, 2.0))
 
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"gap": (1e-4,), "stiffness": (1e6,)}
+    decisive: ClassVar[tuple[str, ...]] = ()
     leads: ClassVar[bool] = False
 
     def normal(self, depth: Value, rate: Value) -> Value:

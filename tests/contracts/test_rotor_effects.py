@@ -41,6 +41,7 @@ EXAMPLES = {
         Example(hm.OilWhirlOnset(amplitude=50.0, phase=0.2, onset=5.0), "left", ("amplitude",)),
         Example(hm.BallPass(amplitude=50.0, order=3.57, phase=0.2, growth=0.5, reference_speed=20.0), "left", ("amplitude",)),
         Example(hm.InnerRacePass(amplitude=50.0, order=5.43, phase=0.2), "left", ("amplitude",)),
+        Example(hm.InnerRacePulses(amplitude=50.0, mean=40.0, order=5.43, phase=0.2), "left", ("amplitude", "mean")),
         Example(
             hm.BallPassHarmonics(amplitude=50.0, order=3.57, phase=0.2, second_amplitude=20.0, third_amplitude=10.0, direction=0.7),
             "left",

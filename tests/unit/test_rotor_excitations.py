@@ -406,6 +406,7 @@ def test_a_whirl_that_sets_in_is_one_that_is_always_there_far_above_its_threshol
         hm.OilWhirlOnset(amplitude=10.0, onset=200.0),
         hm.BallPass(amplitude=10.0, order=3.57, direction=0.3),
         hm.InnerRacePass(amplitude=10.0, order=5.4, direction=0.3),
+        hm.InnerRacePulses(amplitude=10.0, order=5.4, direction=0.3),
     ],
 )
 def test_what_acts_in_a_bearing_pushes_ring_and_housing_apart(effect: Effect) -> None:
@@ -449,6 +450,27 @@ def test_a_flaw_of_the_outer_race_keeps_its_direction_and_one_of_the_inner_race_
     inner = hm.InnerRacePass(amplitude=4.0, order=5.4, direction=1.0, load_direction=-1.5)
     x, y = inner.force(0.0, f, 100.0, 0.0, 0.0, 0.0, 0.0)
     np.testing.assert_allclose((x + 1j * y) * np.exp(-1j * (f + 1.0)), inner.pulse(f, 100.0) * 0.5 * (1.0 + np.cos(f + 2.5)), atol=1e-12)
+
+
+def test_pulses_of_an_inner_race_push_only_and_have_the_harmonics_of_the_other_law() -> None:
+    fields = {"amplitude": 4.0, "phase": 0.6, "order": 5.0, "sharpness": 0.6, "growth": 1.5}
+    pulses, plain = hm.InnerRacePulses(**fields, mean=4.0 / 1.2), hm.InnerRacePass(**fields)
+    f = np.linspace(0.0, 20.0, 4001)
+    np.testing.assert_allclose(pulses.pulse(f, 250.0), plain.pulse(f, 250.0) + 4.0 * 0.5**1.5 / 1.2, rtol=1e-12)
+    assert np.min(pulses.pulse(f, 250.0)) > 0.0
+
+
+@pytest.mark.parametrize(("zone", "loaded"), [(0.5, 0.5), (0.25, 1.0 / 3.0), (1.0, 1.0)])
+def test_the_loaded_zone_is_as_wide_as_stribeck_says(zone: float, loaded: float) -> None:
+    """Loaded where cos(u) > 1 - 2 e: half of the race for e = 1/2, acos(1/2)/pi = 1/3 of it for e = 1/4, all of it for e = 1."""
+    law = hm.InnerRacePulses(amplitude=4.0, mean=10.0, order=5.4, load_zone=zone, unloaded=0.0, direction=0.3, load_direction=-1.2)
+    f = (np.arange(20000) + 0.5) * np.pi / 1e4
+    x, y = law.force(0.0, f, 500.0, 0.0, 0.0, 0.0, 0.0)
+    share = (x + 1j * y) * np.exp(-1j * (f + 0.3)) / law.pulse(f, 500.0)
+    assert np.mean(np.abs(share) > 0.0) == pytest.approx(loaded, abs=2e-4)
+    largest = int(np.argmax(share.real))
+    assert math.cos(f[largest] + 0.3 + 1.2) == pytest.approx(1.0, abs=1e-6)
+    assert share[largest] == pytest.approx(1.0, abs=1e-5)
 
 
 # -- from outside ---------------------------------------------------------------------------------------
@@ -511,6 +533,7 @@ EXCITATIONS: Mapping[str, tuple[Effect, str]] = {
         (hm.OilWhirlOnset(amplitude=100.0, onset=100.0), "bearing_1"),
         (hm.BallPass(amplitude=50.0, order=3.57, growth=1.5), "bearing_2"),
         (hm.InnerRacePass(amplitude=50.0, order=5.43), "bearing_2"),
+        (hm.InnerRacePulses(amplitude=50.0, order=5.43), "bearing_2"),
         (hm.ExternalShock(amplitude=500.0, start=0.0), "bearing_2"),
         (hm.GroundVibration(amplitude=50.0, frequency=300.0, phase=1.0), "bearing_2"),
     )

@@ -166,6 +166,7 @@ ROTOR_EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.BallPass(amplitude=3.0, order=3.57, sharpness=0.3), "bearing"),
     (hm.BallPassHarmonics(amplitude=3.0, order=3.57, second_amplitude=1.0), "bearing"),
     (hm.InnerRacePass(amplitude=3.0, order=5.43, load_direction=-1.0), "bearing"),
+    (hm.InnerRacePulses(amplitude=3.0, order=5.43, load_zone=0.7), "bearing"),
     (hm.ExternalShock(amplitude=100.0, start=0.1), "bearing"),
     (hm.GroundVibration(amplitude=10.0, frequency=200.0), "bearing"),
     (hm.ProbeRunout(once=1e-6, once_phase=0.3, twice=1e-7), "rotor"),

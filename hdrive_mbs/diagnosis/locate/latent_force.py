@@ -37,6 +37,17 @@ class LatentForce:
     torque: FloatArray
 
 
+@dataclass(frozen=True, eq=False)
+class TurnedForce:
+    """A force across the axis over the angle of the shaft, in one record.
+
+    angle : rad, shape (n,);  force : F_x + i F_y, N, shape (n,)
+    """
+
+    angle: FloatArray
+    force: ComplexArray
+
+
 def most_probable(transfer: ComplexArray, residuals: ComplexArray, strength: FloatArray) -> ComplexArray:
     """F = (H^H H + 1/s^2)^-1 H^H Y in every window and bin, shape (windows, bins, d).
 

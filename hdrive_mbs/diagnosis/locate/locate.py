@@ -13,12 +13,13 @@ from scipy.special import log_ndtr
 
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.locate.about import About, linearised
-from hdrive_mbs.diagnosis.locate.latent_force import LatentForce, by_direction, latent_force, most_probable
+from hdrive_mbs.diagnosis.locate.latent_force import LatentForce, TurnedForce, by_direction, latent_force, most_probable
 from hdrive_mbs.diagnosis.locate.likelihood import Explained, Likelihood, directions
 from hdrive_mbs.diagnosis.locate.motion import KnownForce
 from hdrive_mbs.diagnosis.locate.spectra import joined
 from hdrive_mbs.diagnosis.result import NOWHERE, Place
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.turning import reference_shaft
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import AnalysisError, unknown_place
 
@@ -338,6 +339,14 @@ class Localiser:
                 about, left, shown = item.about, item.about.likelihood.residuals(k, item.found.z), item.about.shown(item.name, k)
                 made += latent_force(about.motions[k], about.spectra[k], about.responses[k], shown, left, fit.strength)
         return tuple(made)
+
+    def turned(self, at: str) -> tuple[TurnedForce, ...]:
+        """The most probable force across the axis at a place over the angle of the shaft, of each trial where it shows in x and y."""
+        found: dict[str, dict[str, FloatArray]] = {}
+        for force in self.force(at):
+            found.setdefault(force.record, {})[force.way] = force.force
+        angles = {motion.trial.name: reference_shaft(motion)[1] for motion in self._about.motions}
+        return tuple(TurnedForce(angles[record], ways["x"] + 1j * ways["y"]) for record, ways in found.items() if {"x", "y"} <= ways.keys())
 
 
 def _one_a_place(tried: Sequence[_Tried]) -> list[_Tried]:

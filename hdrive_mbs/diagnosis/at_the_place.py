@@ -1,0 +1,75 @@
+"""What is tried where the gap of a rotor line lies: laws with a period, begun at orders of the force that is missing there.
+
+Such a law shows in a first look where its period is nearly right alone, and residuals give that poorly: they stand out where the line
+resonates.  The place of the gap asks for no law, and the force there knows no resonance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hdrive_mbs.diagnosis.candidates import Candidate
+from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.force_orders import ForceOrders
+from hdrive_mbs.diagnosis.locate import Localiser
+from hdrive_mbs.diagnosis.periods import Periods
+from hdrive_mbs.diagnosis.result import NOWHERE
+from hdrive_mbs.diagnosis.search import Depth, Report, search
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.tasks import Found, Task, run_task
+from hdrive_mbs.diagnosis.team import Team
+from hdrive_mbs.errors import HdriveError
+
+SURE = 0.5
+"""Probability of a place from which its laws are tried."""
+CLOSE = Depth(brief=(1, 2), laws=4, picked=3, kept=(1, 2), serious=1, again=False)
+"""How far that search goes."""
+
+
+def localised(fine: Simulator, null: Fitted) -> Localiser | None:
+    """Where the gap of a rotor line lies; None for drive trains, whose places few laws share, and where it cannot be said.
+
+    On a rotor line the localisation begins at the model as given: it refits on its own, and a missing cause bends a fitted one most.
+    """
+    if not any(trial.scene.network().is_lateral for trial in fine.trials):
+        return None
+    nominal = run_task(fine, Task(null.hypothesis, np.zeros_like(null.z), None, 0, 1.0))
+    if nominal is None:
+        return None
+    try:
+        return Localiser(fine, nominal)
+    except HdriveError:
+        return None
+
+
+def at_the_place(
+    team: Team, coarse: Simulator, base: Fitted, localiser: Localiser, tried: Sequence[Candidate], report: Report
+) -> tuple[Found, ...]:
+    """Laws with a period at the place where the gap most probably lies, fitted; none where no place is likely enough."""
+    place = localiser.places()[0]
+    if place.at == NOWHERE or place.probability < SURE:
+        return ()
+    there = [item for item in those_at(place.at, tried) if item.kind.periodic]
+    if not there:
+        return ()
+    forces = localiser.turned(place.at)
+
+    def begin(simulator: Simulator, fitted: Fitted) -> ForceOrders:
+        return ForceOrders(forces, Periods(simulator, fitted))
+
+    return search(team, coarse, base, {}, there, depth=CLOSE, begin=begin, report=report).found
+
+
+def those_at(place: str, tried: Sequence[Candidate]) -> list[Candidate]:
+    """Laws that act where a source of the localisation lies: between ring and housing, on a housing, at a station, section or drive.
+
+    What misaligns a coupling acts on the line's end beside a drive.
+    """
+    part, _, side = place.partition(".")
+    if side:
+        kind = {"law": "bearing", "housing": "support"}.get(side)
+        return [item for item in tried if item.at == part and item.kind.acts_on == kind]
+    driven = any(item.at == place and item.kind.acts_on == "motor" for item in tried)
+    return [item for item in tried if item.at == place or (driven and item.kind.acts_on == "drive end")]
