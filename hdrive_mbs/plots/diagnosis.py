@@ -81,4 +81,4 @@ def _size(trace: Trace, simulated: FloatArray) -> float:
 
 def _title(result: Diagnosis) -> str:
     said = f"{result.scene.name}: {sentences.verdict(result)} {sentences.confidence(result)} {sentences.ambiguity(result)}"
-    return textwrap.fill(said.replace("_", " "), 96)
+    return textwrap.fill(said.replace("_", " "), 90)
