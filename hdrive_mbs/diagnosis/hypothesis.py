@@ -47,6 +47,10 @@ class Added:
         return math.prod(len(values) for name, values in kind.starts.items() if name not in searched_fields(kind))
 
 
+PERIOD = 1e-6
+"""Difference of the search coordinate of a period, for derivatives: over thousands of radians a larger one is whole turns of its phase."""
+
+
 def searched_fields(kind: type[Effect]) -> dict[str, Quantity]:
     """The fields of an effect that a search varies: those with a typical range."""
     quantities = {item.name: item.metadata.get("quantity") for item in dataclasses.fields(kind)}
@@ -72,8 +76,8 @@ def unknowns_of(effect: Effect, name: str) -> tuple[Unknown, ...]:
         elif item.low == 0.0:
             found.append(Strength(path, low, high, value or low, np.inf if item.high is None else item.high))
         else:
-            bottom = item.low if item.low is not None else 0.0
-            found.append(Shape(path, low, high, bottom, np.inf if item.high is None else item.high))
+            bottom, top = item.low if item.low is not None else 0.0, np.inf if item.high is None else item.high
+            found.append(Shape(path, low, high, bottom, top, PERIOD if key in kind.periodic else Shape.difference))
     return tuple(found)
 
 

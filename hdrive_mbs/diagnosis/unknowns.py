@@ -162,12 +162,16 @@ class Strength(Size):
 
 @dataclass(frozen=True)
 class Shape(Unknown):
-    """A positive field."""
+    """A positive field.
+
+    difference : of the search coordinate, for numerical derivatives
+    """
 
     low: float
     high: float
     bottom: float = 0.0
     top: float = math.inf
+    difference: float = 0.01
 
     @property
     def _middle(self) -> float:
@@ -189,6 +193,9 @@ class Shape(Unknown):
 
     def clipped(self, z: Sequence[float]) -> tuple[float, ...]:
         return (min(max(z[0], -3.0), 3.0),)
+
+    def step(self, z: Sequence[float]) -> float:
+        return self.difference
 
 
 @dataclass(frozen=True)
