@@ -63,13 +63,9 @@ def at_the_place(
 
 
 def those_at(place: str, tried: Sequence[Candidate]) -> list[Candidate]:
-    """Laws that act where a source of the localisation lies: between ring and housing, on a housing, at a station, section or drive.
-
-    What misaligns a coupling acts on the line's end beside a drive.
-    """
+    """Laws that act where a source of the localisation lies: between ring and housing, on a housing, at a station or section."""
     part, _, side = place.partition(".")
     if side:
         kind = {"law": "bearing", "housing": "support"}.get(side)
         return [item for item in tried if item.at == part and item.kind.acts_on == kind]
-    driven = any(item.at == place and item.kind.acts_on == "motor" for item in tried)
-    return [item for item in tried if item.at == place or (driven and item.kind.acts_on == "drive end")]
+    return [item for item in tried if item.at == place]

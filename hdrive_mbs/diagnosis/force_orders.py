@@ -95,9 +95,10 @@ def _spectrum(item: TurnedForce, count: int) -> FloatArray:
 def _lines(orders: FloatArray, size: FloatArray, width: float, high: float) -> list[float]:
     """The strongest lines away from whole orders, forward and backward."""
     away = np.abs(orders - np.round(orders)) > WHOLE * width
+    shown = np.where(away & (np.abs(orders) <= high), size, 0.0)
     chosen: list[float] = []
-    for k in np.argsort(np.where(away & (np.abs(orders) <= high), size, 0.0))[::-1]:
-        if len(chosen) == LINES or not away[k]:
+    for k in np.argsort(shown)[::-1]:
+        if len(chosen) == LINES or shown[k] <= 0.0:
             break
         if all(abs(abs(orders[k]) - abs(other)) > WHOLE * width for other in chosen):
             chosen.append(float(orders[k]))

@@ -48,7 +48,8 @@ class Added:
 
 
 PERIOD = 1e-6
-"""Difference of the search coordinate of a period, for derivatives: over thousands of radians a larger one is whole turns of its phase."""
+"""Difference of the search coordinate of a period, for derivatives: that of other shapes, 0.01, moves an order by 0.3 %, which over
+thousands of radians is whole turns of its phase."""
 
 
 def searched_fields(kind: type[Effect]) -> dict[str, Quantity]:

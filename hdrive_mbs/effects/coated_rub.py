@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from hdrive_mbs.effects.rub import Rub
+from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
 
@@ -21,6 +22,8 @@ class CoatedRub(Rub):
 
     Source: our own, the simplest curve from a stiffness to a limit.  Leaves out that a cut coat does not come back, and what Rub
     leaves out.
+
+    Raises ParameterError for an ``exponent``: the coat has its own curve.
     """
 
     coat_depth: float = parameter("m", "p_c, depth at which the coat bears half of its most", above=0.0, high=0.1, typical=(1e-5, 3e-4))
@@ -29,6 +32,11 @@ class CoatedRub(Rub):
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"gap": (1e-4,), "stiffness": (1e6,), "coat_depth": (5e-5,)}
     decisive: ClassVar[tuple[str, ...]] = ()
     leads: ClassVar[bool] = False
+
+    def check(self) -> None:
+        super().check()
+        if self.exponent != 1.0:
+            raise ParameterError(f"CoatedRub.exponent = {self.exponent:g} would not be used. Leave it at 1, or take HertzianRub.")
 
     def normal(self, depth: Value, rate: Value) -> Value:
         return self.stiffness * depth / (1.0 + depth / self.coat_depth) + self.damping * rate

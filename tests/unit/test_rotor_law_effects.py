@@ -673,6 +673,8 @@ def test_rub_takes_friction_times_normal_force_times_sliding_speed_and_stores_th
     [
         (lambda: hm.BearingClearance(gap=-1e-6), "BearingClearance.gap = -1e-06 m: must be at least 0"),
         (lambda: hm.Rub(**(RUB | {"gap": 0.0})), "Rub.gap = 0 m: must be greater than 0"),
+        (lambda: hm.HertzianRub(**RUB, loss=0.5, damping=50.0), "HertzianRub.damping = 50 N s/m would not be used. Give loss"),
+        (lambda: hm.CoatedRub(**RUB, damping=50.0, coat_depth=1e-5, exponent=1.5), "CoatedRub.exponent = 1.5 would not be used"),
         (lambda: hm.Looseness(share=1.0), "Looseness.share = 1: must be at most 0.999"),
         (lambda: hm.Looseness(share=0.5, direction="up"), "Looseness.direction = 'up': must be one of x, y, both"),
         (lambda: hm.BreathingCrack(compliance=1e-6, position=1.2), "BreathingCrack.position = 1.2: must be at most 1"),
