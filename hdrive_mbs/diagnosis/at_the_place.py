@@ -8,19 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.force_orders import ForceOrders
-from hdrive_mbs.diagnosis.locate import Localiser
+from hdrive_mbs.diagnosis.located import Located
 from hdrive_mbs.diagnosis.periods import Periods
 from hdrive_mbs.diagnosis.result import NOWHERE
 from hdrive_mbs.diagnosis.search import Depth, Report, search
 from hdrive_mbs.diagnosis.simulator import Simulator
-from hdrive_mbs.diagnosis.tasks import Found, Task, run_task
+from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.team import Team
-from hdrive_mbs.errors import HdriveError
 
 SURE = 0.5
 """Probability of a place from which its laws are tried."""
@@ -28,36 +25,19 @@ CLOSE = Depth(brief=(1, 2), laws=4, picked=3, kept=(1, 2), serious=1, again=Fals
 """How far that search goes."""
 
 
-def localised(fine: Simulator, null: Fitted) -> Localiser | None:
-    """Where the gap of a rotor line lies; None for drive trains, whose places few laws share, and where it cannot be said.
-
-    On a rotor line the localisation begins at the model as given: it refits on its own, and a missing cause bends a fitted one most.
-    """
-    if not any(trial.scene.network().is_lateral for trial in fine.trials):
-        return None
-    nominal = run_task(fine, Task(null.hypothesis, np.zeros_like(null.z), None, 0, 1.0))
-    if nominal is None:
-        return None
-    try:
-        return Localiser(fine, nominal)
-    except HdriveError:
-        return None
-
-
 def at_the_place(
-    team: Team, coarse: Simulator, base: Fitted, localiser: Localiser, tried: Sequence[Candidate], report: Report
+    team: Team, coarse: Simulator, base: Fitted, gap: Located, tried: Sequence[Candidate], report: Report
 ) -> tuple[Found, ...]:
     """Laws with a period at the place where the gap most probably lies, fitted; none where no place is likely enough."""
-    place = localiser.places()[0]
+    place = gap.places[0]
     if place.at == NOWHERE or place.probability < SURE:
         return ()
     there = [item for item in those_at(place.at, tried) if item.kind.periodic]
     if not there:
         return ()
-    forces = localiser.turned(place.at)
 
     def begin(simulator: Simulator, fitted: Fitted) -> ForceOrders:
-        return ForceOrders(forces, Periods(simulator, fitted))
+        return ForceOrders(gap.turned, Periods(simulator, fitted))
 
     return search(team, coarse, base, {}, there, depth=CLOSE, begin=begin, report=report).found
 

@@ -24,9 +24,9 @@ from hdrive_mbs.diagnosis.gap import gaps
 from hdrive_mbs.diagnosis.gather import Evidence, gather
 from hdrive_mbs.diagnosis.input_checks import check_records, check_trials, not_compared
 from hdrive_mbs.diagnosis.journal import Journal
-from hdrive_mbs.diagnosis.locate import Localiser
+from hdrive_mbs.diagnosis.located import Located, located
 from hdrive_mbs.diagnosis.pictured import pictured
-from hdrive_mbs.diagnosis.result import NOWHERE, Cause, Diagnosis, Place, Separation
+from hdrive_mbs.diagnosis.result import Cause, Diagnosis, Separation
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.diagnosis.suspects import Label
@@ -136,12 +136,11 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
     notes: list[str] = []
     claimed = () if claim.kind in ("none", "unknown") or claim.fit is None else _causes(claim.fit, claim, improved, bench.groups)
     extras: dict[str, object] = {}
-    where, located = _located(evidence, notes)
+    where = _located(evidence, notes)
     if pictures:
         extras["traces"] = traces(evidence.fine, evidence.nominal, evidence.null, best)
         extras["domain"] = domain_map(evidence.fine, evidence.null, best)
-        if located is not None and where and where[0].at != NOWHERE:
-            extras["forces"] = tuple(pictured(force) for force in located.force(where[0].at))
+        extras["forces"] = tuple(pictured(force) for force in (where.forces if where else ()))
     if claim.tied:
         extras["next_records"] = _next_records(bench, records, evidence, claim, notes)
     notes += _verified(evidence.fine, best)
@@ -154,7 +153,7 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
         causes=claimed,
         indistinguishable=claim.tied,
         ranking=_ranking(evidence, claim),
-        where=where,
+        where=where.places if where else (),
         gaps=gaps(evidence.fine, evidence.nominal.residuals, evidence.null.residuals, best.residuals),
         parameters=nominal_estimates(best, bench.scene),
         notes=tuple(notes),
@@ -164,25 +163,16 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
     )
 
 
-def localised_about(evidence: Evidence) -> Fitted:
-    """The model that the place of a gap is looked for from.
-
-    On a rotor line that is the one as given: the localisation refits on its own there, and a missing cause bends the fitted one most.
-    """
-    lateral = any(trial.scene.network().is_lateral for trial in evidence.fine.trials)
-    return evidence.nominal if lateral else evidence.null
-
-
-def _located(evidence: Evidence, notes: list[str]) -> tuple[tuple[Place, ...], Localiser | None]:
-    """Places of the gap, most probable first; a note where they cannot be found."""
+def _located(evidence: Evidence, notes: list[str]) -> Located | None:
+    """Where the gap lies, with a note where that is in doubt; None, and a note, where it cannot be found."""
     try:
-        localiser = evidence.place or Localiser(evidence.fine, localised_about(evidence))
-        if localiser.doubt:
-            notes.append(f"Place of the gap: {localiser.doubt}")
-        return localiser.places(), localiser
+        found = evidence.place or located(evidence.fine, evidence.nominal, evidence.null)
     except HdriveError as error:
         notes.append(f"The place of the gap was not looked for: {error}")
-        return (), None
+        return None
+    if found.doubt:
+        notes.append(f"Place of the gap: {found.doubt}")
+    return found
 
 
 def _next_records(bench: Bench, records: Sequence[Record], evidence: Evidence, claim: Claim, notes: list[str]) -> tuple[Separation, ...]:

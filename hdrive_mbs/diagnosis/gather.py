@@ -8,11 +8,11 @@ from functools import partial
 
 import numpy as np
 
-from hdrive_mbs.diagnosis.at_the_place import at_the_place, localised
+from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import beyond, enough
 from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.locate import Localiser
+from hdrive_mbs.diagnosis.located import Located, bends, located
 from hdrive_mbs.diagnosis.pairs import alone, joined, swapped
 from hdrive_mbs.diagnosis.search import HOPS, Depth, Report, Search, fit_nominal, search
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -21,7 +21,7 @@ from hdrive_mbs.diagnosis.tasks import FINE, NEAR, Found, Task, run_task, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import left
-from hdrive_mbs.errors import AnalysisError
+from hdrive_mbs.errors import AnalysisError, HdriveError
 
 LEFT = 1.1
 """Mean square left by the best single cause, on what its fit saw and did not see, above which a second one is looked for; more beside a
@@ -58,7 +58,7 @@ class Evidence:
     pair: Search | None
     singles: tuple[Found, ...]
     pairs: tuple[Found, ...]
-    place: Localiser | None = None
+    place: Located | None = None
 
 
 def wants_second(null: Fitted, first: Found, samples: int) -> bool:
@@ -77,13 +77,17 @@ def _with(search_: Search, more: Sequence[Found]) -> Search:
 
 def _there(
     team: Team, coarse: Simulator, fine: Simulator, null: Fitted, single: Search, tried: Sequence[Candidate], said: Report
-) -> tuple[Localiser | None, tuple[Found, ...]]:
-    """Where the gap of a rotor line lies, if the search left something, and the laws of that place."""
-    if min((left(item.fitted) for item in single.found), default=left(null)) <= enough(null, LEFT):
+) -> tuple[Located | None, tuple[Found, ...]]:
+    """Where the gap of a rotor line lies, if the search left something, and what laws of that place explain of it."""
+    if not bends(fine) or min((left(item.fitted) for item in single.found), default=left(null)) <= enough(null, LEFT):
         return None, ()
     said("looking where the gap lies", 0, 1)
-    place = localised(fine, null)
-    if place is None:
+    nominal = run_task(fine, Task(null.hypothesis, np.zeros_like(null.z), None, 0, 1.0))
+    if nominal is None:
+        return None, ()
+    try:
+        place = located(fine, nominal, null)
+    except HdriveError:
         return None, ()
     return place, at_the_place(team, coarse, null, place, tried, partial(_said, said, "at the place of the gap"))
 

@@ -13,13 +13,13 @@ from scipy.linalg import expm
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import localised_about
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.force_orders import ForceOrders
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.locate import Localiser
 from hdrive_mbs.diagnosis.locate.motion import KnownForce, columns_of
 from hdrive_mbs.diagnosis.locate.observer import Observer, observer
+from hdrive_mbs.diagnosis.located import localised_about, located
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.periods import Periods
 from hdrive_mbs.diagnosis.result import NOWHERE
@@ -261,23 +261,23 @@ def test_a_diagnosis_looks_for_the_place_from_the_model_as_given_on_rotor_lines_
     trials = {"lateral": [trial()], "torsional": drive.trials(diagnosis_cases.quiet()[0])}
     for kind, wanted in (("lateral", "nominal"), ("torsional", "null")):
         fine = SimpleNamespace(trials=trials[kind])
-        evidence = SimpleNamespace(fine=fine, nominal="nominal", null="null")
-        assert localised_about(evidence) == wanted  # type: ignore[arg-type, comparison-overlap]
+        assert localised_about(fine, "nominal", "null") == wanted  # type: ignore[arg-type, comparison-overlap]
 
 
 def test_a_flaw_of_an_inner_race_is_named_with_its_order_from_the_force_at_its_bearing() -> None:
     """Sidebands one order apart, both ways round, and a mean; another law than the one that is tried."""
     order = 4.8586
     flaw = hm.InnerRacePulses(amplitude=20.0, mean=20.0, order=order, sharpness=0.5, direction=0.7, load_zone=0.8)
-    located = localiser(*race_flaw(flaw), bare=dataclasses.replace(trial(), held_out=TIMES > 1.3))
-    assert located.places()[0].at == "bearing_2.law"
-    simulator, null = located._simulator, fit(located._simulator, NOMINAL, ORIGIN, steps=0)
-    turned = located.turned("bearing_2.law")
-    first = ForceOrders(turned, Periods(simulator, null)).standing_out("turn", 2.0, 7.0)[:3]
+    simulator = localiser(*race_flaw(flaw), bare=dataclasses.replace(trial(), held_out=TIMES > 1.3))._simulator
+    null = fit(simulator, NOMINAL, ORIGIN, steps=0)
+    gap = located(simulator, null, null)
+    assert gap.places[0].at == "bearing_2.law"
+    assert {force.way for force in gap.forces} == {"x", "y"}
+    first = ForceOrders(gap.turned, Periods(simulator, null)).standing_out("turn", 2.0, 7.0)[:3]
     assert min(abs(found - order) for found in first) < 2.0 * np.pi / (SPEED * TIMES[-1])
     tried = candidates(simulator.trials[0].scene, [hm.BallPass, hm.BallPassHarmonics, hm.InnerRacePass])
     with Team(1) as team:
-        best = at_the_place(team, simulator, null, located, tried, lambda stage, done, total: None)[0]
+        best = at_the_place(team, simulator, null, gap, tried, lambda stage, done, total: None)[0]
     assert (best.suspect.label, best.suspect.law) == (("ball_pass", "bearing_2"), "InnerRacePass")
     found = best.fitted.hypothesis.values(best.fitted.z)
     assert next(value for path, value in found.items() if path.endswith(".order")) == pytest.approx(order, abs=3e-4)

@@ -1,0 +1,51 @@
+"""Where the gap lies: what a localisation found, kept without its linear models, which take about a gigabyte on a rotor line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.locate import LatentForce, Localiser
+from hdrive_mbs.diagnosis.locate.latent_force import TurnedForce
+from hdrive_mbs.diagnosis.result import NOWHERE, Place
+from hdrive_mbs.diagnosis.simulator import Simulator
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Located:
+    """Places, most probable first, and the course of the force at the first of them, over time and over the turns of the shaft.
+
+    doubt : why the first place is not to be relied on; empty where it is
+    forces, turned : none where no place is the likeliest answer
+    """
+
+    places: tuple[Place, ...]
+    doubt: str
+    forces: tuple[LatentForce, ...]
+    turned: tuple[TurnedForce, ...]
+
+
+def located(fine: Simulator, nominal: Fitted, null: Fitted) -> Located:
+    """Places of the gap of a model as given and refitted.  Raises HdriveError where the model cannot be linearised."""
+    localiser = Localiser(fine, localised_about(fine, nominal, null))
+    places = localiser.places()
+    found = bool(places) and places[0].at != NOWHERE
+    return Located(
+        places=places,
+        doubt=localiser.doubt,
+        forces=localiser.force(places[0].at) if found else (),
+        turned=localiser.turned(places[0].at) if found else (),
+    )
+
+
+def localised_about(fine: Simulator, nominal: Fitted, null: Fitted) -> Fitted:
+    """The model that the place of a gap is looked for from.
+
+    On a rotor line that is the one as given: the localisation refits on its own there, and a missing cause bends the fitted one most.
+    """
+    return nominal if bends(fine) else null
+
+
+def bends(fine: Simulator) -> bool:
+    """Whether records are of a rotor line."""
+    return any(trial.scene.network().is_lateral for trial in fine.trials)
