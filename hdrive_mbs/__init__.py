@@ -175,6 +175,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.shaft_bow": ("ShaftBow",),
     "effects.shaft_kink": ("ShaftKink",),
     "effects.misalignment": ("Misalignment",),
+    "effects.loaded_misalignment": ("LoadedMisalignment",),
     "effects.oil_whirl": ("OilWhirl",),
     "effects.oil_whirl_onset": ("OilWhirlOnset",),
     "effects.ball_pass": ("BallPass",),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -52,8 +52,12 @@ class LateralEffect(Effect):
         """Torque on the spin in the true sense [N m], from the ground; None for none."""
         return None
 
+    def factor(self, draft: Draft, place: str) -> Callable[[Moment], Value] | None:
+        """What force, moments and torque are multiplied by, where that depends on more than the motion of the place; None for 1."""
+        return None
+
     def apply(self, draft: Draft, place: str, name: str) -> None:
-        stretches = stretches_of(self, draft, place)
+        stretches, factor = stretches_of(self, draft, place), self.factor(draft, place)
 
         def forces(moment: Moment, s: Mapping[str, Value], v: Mapping[str, Value]) -> Mapping[str, Value]:
             across = (moment.time, s["phi"], v["phi"], s["x"], s["y"], v["x"], v["y"])
@@ -66,7 +70,8 @@ class LateralEffect(Effect):
             torque = self.torque(*across)
             if torque is not None:
                 found["phi"] = torque
-            return {key: -value for key, value in found.items()}
+            size = -1.0 if factor is None else -factor(moment)
+            return {key: size * value for key, value in found.items()}
 
         kind = Excitation if self.excites else Coupling
         element = kind(name, stretches, forces, self.dissipative)

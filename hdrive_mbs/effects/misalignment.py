@@ -25,7 +25,7 @@ class Misalignment(LateralEffect):
 
     Source: Gibbons, Coupling misalignment forces, Turbomachinery Symposium 5 (1976) 111; orders 1 and 2: Sekhar,
     Prabhu, J. Sound and Vibration 185 (1995) 655.  Leaves out the stiffness of the coupling between the shafts, the
-    torque that makes the forces grow, and a constant preload.
+    torque that makes the forces grow (LoadedMisalignment), and a constant preload.
     """
 
     once: float = parameter("N", "A_1 at order 1, 0-peak", default=0.0, low=0.0, high=1e6, typical=(0.01, 1e3))

@@ -89,6 +89,25 @@ class DraftTorsion(DraftChannels):
         known = [name.removesuffix(".torque") for name in torques if name.endswith(".torque")]
         raise PlaceError(f"{asked_by} needs a part with a torque law, but {place!r} has none. Such parts: {', '.join(known) or 'none'}.")
 
+    def fed_in(self, place: str, asked_by: str = "This") -> Callable[[Moment], Value]:
+        """Torque [N m] that shafts and gears carry away from a place, forward sense: what is fed into the line there, at a steady speed.
+
+        With what effects change of them.  Raises PlaceError where no shaft or gear ends.
+        """
+        node = self.body(place, asked_by)
+        ending = [item for item in self._connections.values() if node.name in item.factors]
+        if not ending:
+            known = [path for path, name in self._flanges.items() if any(name in item.factors for item in self._connections.values())]
+            raise PlaceError(
+                f"{asked_by} needs the torque that a shaft carries away from {place!r}, where none ends. "
+                f"Places where one does: {', '.join(known) or 'none'}."
+            )
+
+        def read(moment: Moment) -> Value:
+            return -sum(item.build().contribution(moment)[node.name] for item in ending)
+
+        return read
+
     def change_motor(
         self, place: str, change: Callable[[Callable[[Moment], Value]], Callable[[Moment], Value]], asked_by: str = "This"
     ) -> Callable[[Moment], Value]:

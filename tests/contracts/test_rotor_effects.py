@@ -37,6 +37,7 @@ EXAMPLES = {
             "left",
             ("once", "twice", "thrice"),
         ),
+        Example(hm.LoadedMisalignment(once=20.0, twice=30.0, thrice=10.0, growth=0.1, lever=0.05), "left", ("once", "twice", "thrice")),
         Example(hm.OilWhirl(amplitude=50.0, phase=0.2, growth=1.5, reference_speed=20.0, onset=5.0), "left", ("amplitude",)),
         Example(hm.OilWhirlOnset(amplitude=50.0, phase=0.2, onset=5.0), "left", ("amplitude",)),
         Example(hm.BallPass(amplitude=50.0, order=3.57, phase=0.2, growth=0.5, reference_speed=20.0), "left", ("amplitude",)),

@@ -352,6 +352,26 @@ def test_misalignment_draws_the_ellipses_of_its_law() -> None:
     np.testing.assert_array_equal(np.array(same), np.array((x, y)))  # no growth with speed
 
 
+def test_a_loaded_misalignment_grows_with_the_torque_that_the_shafts_carry_away() -> None:
+    scene, plain = mid_shaft(), hm.Misalignment(twice=5.0, once=2.0, lever=0.07)
+    loaded = hm.LoadedMisalignment(twice=5.0, once=2.0, lever=0.07, growth=0.02)
+    turning = scene.network()
+    shafts = [item for item in turning.elements if isinstance(item, Connection)]
+    for place, ends in (("left", {"first": 1.0}), ("disc", {"first": -1.0, "second": 1.0})):
+        base, here = added_forces(scene, plain, place)
+        found, _ = added_forces(scene, loaded, place, here)
+        carried = sum(ends[item.name] * item.value(here) for item in shafts if item.name in ends)
+        assert abs(carried) > 1.0
+        for name, value in base.items():
+            assert found[name] == pytest.approx((1.0 + 0.02 * abs(carried)) * value, rel=1e-9), name
+
+
+def test_a_loaded_misalignment_needs_a_shaft() -> None:
+    alone = hm.Scene(name="disc", parts={"disc": hm.Rotor(mass=1.0, polar_inertia=0.1, transverse_inertia=0.1)}, connections=[])
+    with pytest.raises(PlaceError, match=r"carries away from 'disc', where none ends\. Places where one does: none"):
+        alone.with_effect(hm.LoadedMisalignment(twice=1.0, growth=0.1), at="disc").network()
+
+
 def test_a_lever_makes_the_moments_of_the_same_force_further_along() -> None:
     scene = mid_shaft()
     at_place, moment = added_forces(scene, hm.Misalignment(twice=5.0, once=2.0), "right")
