@@ -11,6 +11,8 @@ from matplotlib.axes import Axes
 from hdrive_mbs.analysis.drive_train.campbell import Campbell
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, number, other_unit, readable, style
+from hdrive_mbs.plots.order_line import draw_order
+from hdrive_mbs.plots.point_names import name_point
 
 CROSSING: dict[str, Any] = {
     "linestyle": "none",
@@ -20,7 +22,6 @@ CROSSING: dict[str, Any] = {
     "markerfacecolor": "white",
     "markeredgewidth": 1.4,
 }
-PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8}
 
 
 @plot.register
@@ -41,7 +42,7 @@ def plot_campbell(result: Campbell, ax: Axes | None = None, *, highest: float | 
                 continue
             ax.plot(result.speeds, branch, label=f"mode {k + 1}", linewidth=1.7, **style(k))
         for order, place, slope in zip(result.order_numbers, result.order_places, result.order_slopes, strict=True):
-            _order(ax, result, order, place, slope, top)
+            draw_order(ax, f"{order:g} x {readable(place)}", result.speeds, slope, top, linestyle="--", linewidth=1.0)
         _crossings(ax, result, top)
         ax.set_xlim(float(result.speeds[0]), float(result.speeds[-1]))
         ax.set_ylim(0.0, top)
@@ -68,56 +69,13 @@ def _top(result: Campbell) -> float:
     return min(max(1.1 * orders, 1.6 * lowest), 1.1 * max(highest, orders))
 
 
-def _order(ax: Axes, result: Campbell, order: float, place: str, slope: float, top: float) -> None:
-    line = slope * np.abs(result.speeds)
-    ax.plot(result.speeds, line, color=GREY, linestyle="--", linewidth=1.0)
-    inside = np.nonzero(line <= top)[0]
-    if not len(inside):
-        return
-    k = int(inside[-1])
-    text = f"{order:g} x {readable(place)}"
-    # the label sits on its line, just inside the picture
-    ax.annotate(
-        text,
-        (float(result.speeds[k]), float(line[k])),
-        xytext=(-4, -1) if line[k] < 0.93 * top else (-5, -4),
-        textcoords="offset points",
-        ha="right",
-        va="bottom" if line[k] < 0.93 * top else "top",
-        fontsize=8.5,
-        color="#333333",
-        bbox=PAPER,
-    )
-
-
-SIDES = (("right", -4.0, 6.0), ("left", 6.0, -14.0), ("left", 4.0, 6.0), ("right", -6.0, -14.0))
-"""Where the name of a crossing may stand: alignment and shift in points, in order of preference."""
-
-
 def _crossings(ax: Axes, result: Campbell, top: float) -> None:
-    """A ring at each crossing, and its motor speed where that covers no other one."""
-    # points per unit of the picture of the usual size: good enough to tell whether two names meet
-    across = 400.0 / float(result.speeds[-1] - result.speeds[0])
-    upward = 220.0 / top
-    taken: list[tuple[float, float, float, float]] = []
+    """A ring at each crossing with its motor speed."""
     for speed, order in zip(result.critical_speeds.tolist(), result.critical_orders, strict=True):
         frequency = result.order_slopes[order] * abs(speed)
-        if frequency > top:
-            continue
-        ax.plot([speed], [frequency], **CROSSING)
-        text = number(speed)
-        for side, right, up in SIDES:
-            left = speed * across + right - (5.3 * len(text) if side == "right" else 0.0)
-            low = frequency * upward + up
-            box = (left, left + 5.3 * len(text), low, low + 10.0)
-            if left >= result.speeds[0] * across and not any(_meet(box, other) for other in taken):
-                taken.append(box)
-                ax.annotate(text, (speed, frequency), xytext=(right, up), textcoords="offset points", ha=side, fontsize=8.5, bbox=PAPER)
-                break
-
-
-def _meet(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> bool:
-    return a[0] < b[1] and b[0] < a[1] and a[2] < b[3] and b[2] < a[3]
+        if frequency <= top:
+            ax.plot([speed], [frequency], **CROSSING)
+            name_point(ax, number(speed), speed, frequency)
 
 
 def _legend(ax: Axes, fresh: bool) -> None:

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from hdrive_mbs.analysis.whirl.critical_map import CriticalSpeedMap
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import COLOURS, GREY, given_or_new, house_look, legend_above, number, other_unit, readable
+from hdrive_mbs.plots.point_names import name_point
 
 LOOK = {"forward": ("-", COLOURS[0]), "backward": ("--", COLOURS[1]), "mixed": ("-", COLOURS[0])}
 
@@ -41,12 +42,9 @@ def plot_critical_map(
             seen.add(whirl)
         for k, (name, (speeds, stiffness)) in enumerate((curves or {}).items()):
             ax.plot(stiffness, speeds, color=GREY, linestyle=(":", "-.")[k % 2], linewidth=1.6, label=f"stiffness of {readable(name)}")
-            named = 0.0
             for whirl, speed, at in result.crossings(speeds, stiffness):
                 ax.plot([at], [speed], "o", color=LOOK[whirl][1], markersize=5, markerfacecolor="white", markeredgewidth=1.2)
-                if speed > 1.12 * named:  # a name that would cover the one before is left out
-                    named = speed
-                    ax.annotate(number(speed), (at, speed), xytext=(6, -3), textcoords="offset points", va="top", fontsize=8.5)
+                name_point(ax, number(speed), at, speed)
         ax.set_xscale("log")
         ax.set_yscale("log")
         ax.set_xlabel("support stiffness [N/m]")

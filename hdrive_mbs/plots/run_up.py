@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,9 +14,9 @@ from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.lengths import shown_unit
 from hdrive_mbs.plots.look import GREY, house_look, legend_above, new_figure, number, other_unit, raised, readable, style
+from hdrive_mbs.plots.point_names import name_point
 from hdrive_mbs.plots.thinning import thinned
 
-PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8}
 NEGLIGIBLE = 1e-9
 """A rotor that whirls less than this share of the largest has no panel."""
 
@@ -109,15 +108,15 @@ def _rotor(ax: Axes, result: RunUp, name: str, about: str, logarithmic: bool) ->
     top = float(speed.max())
     _criticals(ax, result, name, top)
     if about == "static":
-        _peaks(ax, result, name, top, factor, unit)
+        _peaks(ax, result, name, factor, unit)
     slowest = float(speed.min())
     slowest = slowest - 0.02 * (top - slowest) if slowest > FAST * top else 0.0
     ax.set_xlim(slowest, top + 0.02 * (top - slowest) or 1.0)
     if logarithmic:
         ax.set_yscale("log")
-        ax.set_ylim(1e-4 * factor * largest, 3.0 * factor * largest)
+        ax.set_ylim(1e-4 * factor * largest, 10.0 * factor * largest)
     elif largest > 0.0:
-        ax.set_ylim(0.0, 1.25 * factor * largest)
+        ax.set_ylim(0.0, 1.35 * factor * largest)
     ax.set_xlabel("speed of the rotor [rad/s]")
     ax.set_ylabel(f"{what},\n0-peak [{unit}]")
 
@@ -140,10 +139,8 @@ def _ratio(result: RunUp, name: str) -> float:
     return float(turned[0] / turned[1]) if turned[1] else 1.0
 
 
-def _peaks(ax: Axes, result: RunUp, name: str, top: float, factor: float, unit: str) -> None:
+def _peaks(ax: Axes, result: RunUp, name: str, factor: float, unit: str) -> None:
     for speed, amplitude, *_ in result.peaks(name):
         ax.plot([abs(speed)], [factor * amplitude], "o", color="white", markeredgecolor="black", markersize=4.0, zorder=4)
-        near_end = abs(speed) > 0.75 * top
-        options: dict[str, Any] = {"ha": "right" if near_end else "left", "va": "bottom", "fontsize": 8.5, "bbox": PAPER}
-        text = f"{number(factor * amplitude)}\u2009{unit}\nat {number(abs(speed))}\u2009rad/s"
-        ax.annotate(text, (abs(speed), factor * amplitude), xytext=(-5 if near_end else 5, 0), textcoords="offset points", **options)
+        text = f"{number(factor * amplitude)}\u2009{unit},\n{number(abs(speed))}\u2009rad/s"
+        name_point(ax, text, abs(speed), factor * amplitude)

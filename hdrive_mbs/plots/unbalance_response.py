@@ -14,6 +14,7 @@ from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.lengths import shown_unit
 from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, new_figure, number, other_unit, readable, style
+from hdrive_mbs.plots.point_names import name_point
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -146,9 +147,9 @@ def _name_peaks(ax: Axes, peaks: list[tuple[float, float]], width: float) -> Non
     """The speed beside the highest of peaks that lie close together."""
     named: list[float] = []
     for speed, height in sorted(peaks, key=lambda item: -item[1]):
-        if all(abs(speed - other) > 0.08 * width for other in named):
+        if all(abs(speed - other) > 0.03 * width for other in named):
             named.append(speed)
-            ax.annotate(f"{number(speed)} rad/s", (speed, height), xytext=(6, 2), textcoords="offset points", fontsize=8.5)
+            name_point(ax, f"{number(speed)} rad/s", speed, height)
 
 
 def _polar(result: UnbalanceResponse, ax: Axes | None, places: list[str]) -> Axes:
@@ -162,13 +163,7 @@ def _polar(result: UnbalanceResponse, ax: Axes | None, places: list[str]) -> Axe
     first = scale * result.of(named).x
     for k in _marks(first):
         ax.plot([first[k].real], [first[k].imag], color=style(places.index(named))["color"], **RING)
-        ax.annotate(
-            number(float(result.speeds[k])),
-            (float(first[k].real), float(first[k].imag)),
-            xytext=(5, 3),
-            textcoords="offset points",
-            fontsize=8.5,
-        )
+        name_point(ax, number(float(result.speeds[k])), float(first[k].real), float(first[k].imag))
     ax.axhline(0.0, color=GREY, linewidth=0.8, linestyle="-", zorder=0.5)
     ax.axvline(0.0, color=GREY, linewidth=0.8, linestyle="-", zorder=0.5)
     ax.set_aspect("equal", adjustable="datalim")

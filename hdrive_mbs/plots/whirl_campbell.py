@@ -13,18 +13,13 @@ from hdrive_mbs.analysis.whirl.whirl_campbell import WhirlCampbell
 from hdrive_mbs.analysis.whirl.whirl_modes import STABLE
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.look import GREY, given_or_new, house_look, legend_above, new_figure, number, other_unit, readable
+from hdrive_mbs.plots.order_line import draw_order
+from hdrive_mbs.plots.point_names import name_point
 from hdrive_mbs.plots.whirl_look import WHIRL_LOOK
 
 RING: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 6, "markerfacecolor": "white", "markeredgewidth": 1.4}
-PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8}
 UNSTABLE = "#F3D9D6"
 DRIFTING = "#F8F3E4"
-
-_Box = tuple[float, float, float, float]
-"""Left, right, low and high edge of a name, in points."""
-
-LABEL_SIDES = (("right", -4.0, 6.0), ("left", 6.0, -14.0), ("left", 4.0, 6.0), ("right", -6.0, -14.0))
-"""Where the speed of a crossing may stand: alignment and shift in points, in order of preference."""
 
 
 @plot.register
@@ -85,48 +80,17 @@ def _frequencies(ax: Axes, result: WhirlCampbell, top: float) -> list[str]:
             continue
         ax.plot(result.speeds, branch, linewidth=1.6, label=None if word in named else word, **WHIRL_LOOK[word])
         named.add(word)
-    taken: list[_Box] = []
     for order, place, slope in zip(result.order_numbers, result.order_places, result.order_slopes, strict=True):
-        taken += _order(ax, result, f"{order:g} x {readable(place)}", slope, top)
-    _criticals(ax, result, top, taken)
+        draw_order(ax, f"{order:g} x {readable(place)}", result.speeds, slope, top, linestyle="-", linewidth=0.8, zorder=1.5)
+    _criticals(ax, result, top)
     ax.set_xlim(float(result.speeds[0]), float(result.speeds[-1]))
     ax.set_ylim(0.0, top)
     ax.set_ylabel("damped frequency [rad/s]")
     return hidden
 
 
-def _scales(result: WhirlCampbell, top: float) -> tuple[float, float]:
-    """Points per rad/s across and upward in a picture of the usual size: good enough to tell whether two names meet."""
-    return 400.0 / float(result.speeds[-1] - result.speeds[0]), 230.0 / top
-
-
-def _order(ax: Axes, result: WhirlCampbell, text: str, slope: float, top: float) -> list[_Box]:
-    """Draw an order line; returns the box of its name."""
-    line = slope * np.abs(result.speeds)
-    ax.plot(result.speeds, line, color=GREY, linestyle="-", linewidth=0.8, zorder=1.5)
-    inside = np.flatnonzero(line <= 0.97 * top)
-    if not len(inside):
-        return []
-    k = int(inside[-1])
-    across, upward = _scales(result, top)
-    right, low = float(result.speeds[k]) * across - 5.0, float(line[k]) * upward + 2.0
-    ax.annotate(
-        text,
-        (float(result.speeds[k]), float(line[k])),
-        xytext=(-5, 2),
-        textcoords="offset points",
-        ha="right",
-        va="bottom",
-        fontsize=8.5,
-        color="#333333",
-        bbox=PAPER,
-    )
-    return [(right - 5.0 * len(text), right, low, low + 10.0)]
-
-
-def _criticals(ax: Axes, result: WhirlCampbell, top: float, taken: list[_Box]) -> None:
-    """A ring at each crossing, and its speed where that covers no other name."""
-    across, upward = _scales(result, top)
+def _criticals(ax: Axes, result: WhirlCampbell, top: float) -> None:
+    """A ring at each crossing with its speed, those that matter first."""
     crossings = zip(result.critical_speeds.tolist(), result.critical_orders, result.critical_notes, strict=True)
     for speed, order, note in sorted(crossings, key=lambda item: item[2] != ""):
         frequency = result.order_slopes[order] * abs(speed)
@@ -134,34 +98,11 @@ def _criticals(ax: Axes, result: WhirlCampbell, top: float, taken: list[_Box]) -
             continue
         look = {"color": GREY, "markersize": 4} if note else {"color": "black"}
         ax.plot([speed], [frequency], **{**RING, **look, "zorder": 3})
-        text = number(speed)
-        for side, right, up in LABEL_SIDES:
-            left = speed * across + right - (5.3 * len(text) if side == "right" else 0.0)
-            low = frequency * upward + up
-            box = (left, left + 5.3 * len(text), low, low + 10.0)
-            inside = left >= result.speeds[0] * across and box[1] <= result.speeds[-1] * across and low >= 0.0
-            if inside and not any(_meet(box, other) for other in taken):
-                taken.append(box)
-                colour = GREY if note else "black"
-                ax.annotate(
-                    text,
-                    (speed, frequency),
-                    xytext=(right, up),
-                    textcoords="offset points",
-                    ha=side,
-                    fontsize=8.0,
-                    color=colour,
-                    bbox=PAPER,
-                )
-                break
+        name_point(ax, number(speed), speed, frequency, fontsize=8.0, color=look["color"])
     if any(note == "" for note in result.critical_notes):
         ax.plot([], [], color="black", label="critical speed [rad/s]", **RING)
     if any(result.critical_notes):
         ax.plot([], [], color=GREY, label="hardly excited", **{**RING, "markersize": 4})
-
-
-def _meet(a: _Box, b: _Box) -> bool:
-    return a[0] < b[1] and b[0] < a[1] and a[2] < b[3] and b[2] < a[3]
 
 
 def _unstable(ax: Axes, result: WhirlCampbell) -> None:

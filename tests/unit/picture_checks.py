@@ -58,3 +58,22 @@ def assert_nothing_is_cut_off(ax: Axes) -> None:
         assert box.x1 < width + 2.0, text.get_text()
         assert box.y0 > -2.0, text.get_text()
         assert box.y1 < height + 2.0, text.get_text()
+
+
+def assert_names_cover_nothing(ax: Axes) -> None:
+    """No name of a point lies on a curve, a mark or another text of its panel; at least one is there."""
+    renderer = drawn(ax)
+    seen = 0
+    for one in figure_of(ax).axes:
+        boxes = [(text.get_text(), Text.get_window_extent(text, renderer)) for text in one.texts if text.get_visible()]
+        for k, (name, box) in enumerate(boxes):
+            seen += 1
+            for other, there in boxes[:k]:
+                assert not box.overlaps(there), f"{name!r} on {other!r}"
+            for line in one.lines:
+                path = line.get_transform().transform_path(line.get_path())
+                if line.get_linestyle() != "None":
+                    assert not path.cleaned(remove_nans=True).intersects_bbox(box, filled=False), f"{name!r} on {line.get_label()!r}"
+                if line.get_marker() != "None":
+                    assert not any(box.contains(*point) for point in path.vertices), f"{name!r} on a mark"
+    assert seen
