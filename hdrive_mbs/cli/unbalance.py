@@ -48,9 +48,8 @@ def unbalance(
         result.save(out / "unbalance.npz")
         result.to_csv(out / "unbalance.csv")
         drawn = None if places is None else list(wanted)
-        smooth = result.refined()
         for view in ("bode", "polar", "orbits", *(("forces",) if result.bearings else ())):
-            save_figure(plot(smooth, view=view, places=None if view == "forces" else drawn), out / f"unbalance_{view}")
+            save_figure(plot(result, view=view, places=None if view == "forces" else drawn), out / f"unbalance_{view}")
     write_json(json, {**_document(result, wanted), "origin": result.made_from()})
     if json != "-":
         rows = [[p.place, p.speed, p.amplitude, p.width, p.quality] for p in result.peaks if p.place in wanted]

@@ -37,7 +37,7 @@ def plot_unbalance_response(
     speeds: Sequence[float] | None = None,
     logarithmic: bool = False,
 ) -> Axes:
-    """Amplitudes, 0-peak, at the first frequency; returns the (first) Axes.
+    """Amplitudes, 0-peak, at the first frequency; returns the (first) Axes.  Curves have the speeds of ``result.refined()``.
 
     view : "bode" (major semi-axis and phase lag of x over speed), "polar" (x as a complex number), "orbits" (one panel
         a speed) or "forces" (of the bearings on their housings)
@@ -45,11 +45,12 @@ def plot_unbalance_response(
     speeds : of the orbits [rad/s], the nearest calculated ones are drawn; those of the peaks if not given
     logarithmic : amplitudes of Bode and forces on a logarithmic scale
     """
+    smooth = result.refined()
     views: dict[str, Callable[[], Axes]] = {
-        "bode": lambda: _bode(result, ax, _chosen(result, places), logarithmic),
-        "polar": lambda: _polar(result, ax, _chosen(result, places)),
-        "orbits": lambda: _orbits(result, ax, _chosen(result, places), speeds),
-        "forces": lambda: _forces(result, ax, places, logarithmic),
+        "bode": lambda: _bode(smooth, ax, _chosen(smooth, places), logarithmic),
+        "polar": lambda: _polar(smooth, ax, _chosen(smooth, places)),
+        "orbits": lambda: _orbits(smooth if speeds is None else result, ax, _chosen(result, places), speeds),
+        "forces": lambda: _forces(smooth, ax, places, logarithmic),
     }
     if view not in views:
         raise ParameterError(f"view = {view!r}: must be one of {', '.join(views)}.")

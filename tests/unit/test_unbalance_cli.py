@@ -104,24 +104,32 @@ def test_a_foreseen_error_ends_with_exit_code_2_and_one_line() -> None:
 # -- pictures ----------------------------------------------------------------------------------------
 def test_bode_shows_amplitudes_0_peak_and_lags_of_what_was_calculated() -> None:
     result = hm.unbalance_response(build(), np.linspace(0.0, 1000.0, 101))
+    smooth = result.refined()
     upper = hm.plot(result, places=["rotor_1"])
     # 1.3 mm at 370 rad/s
     assert upper.get_ylabel() == "major semi-axis, 0-peak [mm]"
     factor = 1e3
     curve = next(line for line in upper.lines if line.get_label() == "rotor 1")
-    np.testing.assert_allclose(curve.get_ydata(), factor * result["rotor_1"].major)
+    np.testing.assert_allclose(curve.get_ydata(), factor * smooth["rotor_1"].major)
+    assert set(result.speeds) < set(np.asarray(curve.get_xdata()).tolist())
+    # the ring of the peak is on the curve
+    assert np.max(curve.get_ydata()) == pytest.approx(factor * max(p.amplitude for p in result.peaks if p.place == "rotor_1"), rel=1e-6)
     lower = upper.figure.axes[1]
     assert lower.get_ylabel() == "lag of x [degrees]"
     shown = np.asarray(lower.lines[0].get_ydata(), float)
     assert np.isnan(shown[0]), "at rest there is no phase"
-    np.testing.assert_allclose(shown[1:], np.degrees(result["rotor_1"].phase_lag_x[1:]))
+    np.testing.assert_allclose(shown[1:], np.degrees(smooth["rotor_1"].phase_lag_x[1:]))
 
 
 def test_polar_and_orbits_and_forces_show_what_was_calculated() -> None:
     result = hm.unbalance_response(build(), np.linspace(0.0, 1000.0, 101))
     polar = hm.plot(result, view="polar", places=["rotor_2"])
     assert "Re x, 0-peak [µm]" in polar.get_xlabel()
-    np.testing.assert_allclose(polar.lines[0].get_ydata(), 1e6 * result["rotor_2"].x.imag)
+    smooth = result.refined()
+    np.testing.assert_allclose(polar.lines[0].get_ydata(), 1e6 * smooth["rotor_2"].x.imag)
+    z = np.asarray(polar.lines[0].get_xydata()) @ [1.0, 1j]
+    piece = np.diff(z)[np.abs(np.diff(z)) > 0.01 * np.abs(z).max()]
+    assert np.max(np.abs(np.angle(piece[1:] / piece[:-1]))) < np.radians(10.0), "10 rad/s between the speeds asked for made a polygon"
     orbits = hm.plot(result, view="orbits", places=["rotor_2"], speeds=[201.0, 396.0])
     panels = orbits.figure.axes
     assert [panel.get_title(loc="left") for panel in panels] == ["200 rad/s", "400 rad/s"]
@@ -130,7 +138,9 @@ def test_polar_and_orbits_and_forces_show_what_was_calculated() -> None:
     forces = hm.plot(result, view="forces", logarithmic=True)
     assert forces.get_ylabel() == "force on the housing, major semi-axis, 0-peak [N]"
     assert forces.get_yscale() == "log"
-    np.testing.assert_allclose(forces.lines[1].get_ydata(), result.force("bearing_b").major)
+    np.testing.assert_allclose(forces.lines[1].get_ydata(), smooth.force("bearing_b").major)
+    at_peaks = hm.plot(result, view="orbits", places=["rotor_1"]).figure.axes[0]
+    assert at_peaks.get_title(loc="left") == "370.6 rad/s", "the peak itself, not the nearest of the speeds asked for"
     with pytest.raises(ParameterError, match="view = 'nyquist': must be one of bode, polar, orbits, forces"):
         hm.plot(result, view="nyquist")
     with pytest.raises(PlaceError, match="No place 'rotor_3'"):

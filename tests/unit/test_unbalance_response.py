@@ -338,12 +338,49 @@ def test_the_response_at_a_speed_between_is_calculated_and_not_interpolated() ->
     assert y == pytest.approx(quarter.imag, rel=1e-9)
 
 
-def test_more_speeds_are_put_where_a_peak_needs_them() -> None:
-    result = hm.unbalance_response(disc(), np.linspace(0.0, 1500.0, 16))
+def sharpest(curve: Any) -> float:
+    """Largest angle [rad] between neighbouring pieces, of which one is longer than 1 % of the largest amplitude."""
+    piece = np.diff(curve)
+    long = np.abs(piece) > 0.01 * np.abs(curve).max()
+    return float(np.max(np.abs(np.angle(piece[1:] / piece[:-1])), where=long[1:] | long[:-1], initial=0.0))
+
+
+@pytest.mark.parametrize("zeta", [1e-4, 0.02, 0.2])
+def test_more_speeds_are_put_where_a_phase_turns(zeta: float) -> None:
+    c = 2.0 * zeta * math.sqrt(K * M)
+    result = hm.unbalance_response(disc(c=c), np.linspace(0.0, 1500.0, 16))
     finer = result.refined()
     assert set(result.speeds) < set(finer.speeds)
+    # a circle is a polygon of 48 corners or more; halving an angle of at most two of them leaves fewer than 4 x 48 for each of x and y
+    assert sharpest(result["rotor"].x) > 0.5
+    assert sharpest(finer["rotor"].x) < 2.0 * math.pi / 48 + 1e-9
+    assert len(finer.speeds) < 16 + 2 * 4 * 48
     (peak,) = result.peaks
-    assert np.nanmax(finer["rotor"].major) > 0.98 * peak.amplitude > np.nanmax(result["rotor"].major)
+    # half a corner beside the peak of a circle: cos(pi/48)
+    assert finer["rotor"].major.max() > 0.997 * peak.amplitude
+    x = closed(finer.speeds, c=c)
+    np.testing.assert_allclose(finer["rotor"].x, x, rtol=1e-6 if zeta < 1e-3 else CLOSED, atol=1e-20)
+    np.testing.assert_allclose(finer.force("bearing").x, (K + 1j * c * finer.speeds) * x, rtol=1e-6 if zeta < 1e-3 else CLOSED, atol=1e-15)
+    assert finer.refined() is finer
+
+
+def test_a_small_circle_within_a_large_one_is_found_between_the_speeds() -> None:
+    # unlike planes that are coupled: x alone makes a loop where y resonates; both do between 600 and 650 rad/s, two speeds asked for
+    stiffness = np.diag([K, 1.02 * K, 1e6, K_TILT, K_TILT, 0.0])
+    stiffness[0, 1] = stiffness[1, 0] = 0.005 * K
+    law = hm.LinearBearing.from_matrices(stiffness=stiffness, damping=np.diag([C, C / 20.0, 0.0, 0.0, 0.0, 0.0]))
+    finer = hm.unbalance_response(disc(law=law), np.linspace(0.0, 1500.0, 31)).refined()
+    assert sharpest(finer["rotor"].x) < 2.0 * math.pi / 48 + 1e-9
+    w = finer.speeds[1:]
+    system = np.array([[K - M * w**2 + 1j * C * w, 0.005 * K + 0.0 * w], [0.005 * K + 0.0 * w, 1.02 * K - M * w**2 + 1j * C / 20.0 * w]])
+    force = M * E * np.exp(1j * ANGLE) * w[:, None] ** 2 * np.array([1.0, -1j])
+    np.testing.assert_allclose(finer["rotor"].x[1:], np.linalg.solve(np.moveaxis(system, 2, 0), force[..., None])[:, 0, 0], rtol=1e-8)
+
+
+def test_beside_an_undamped_critical_speed_no_speed_is_added() -> None:
+    finer = hm.unbalance_response(disc(c=0.0), np.linspace(0.0, 1500.0, 61)).refined()
+    assert not np.any((finer.speeds > 625.0) & (finer.speeds < 650.0)), "W = 632.5 rad/s lies there"
+    assert np.all(np.isfinite(finer["rotor"].x))
 
 
 # -- bearings that are not linear ---------------------------------------------------------------------
@@ -514,6 +551,7 @@ def test_a_saved_response_comes_back_and_goes_on_calculating(tmp_path: Path) -> 
     np.testing.assert_array_equal(loaded.x, result.x)
     assert loaded.peaks == result.peaks
     assert loaded.at("rotor", 500.0).x[0] == result.at("rotor", 500.0).x[0]
+    np.testing.assert_array_equal(loaded.refined()["rotor"].x, result.refined()["rotor"].x)
     header, first, *_ = result.to_csv(tmp_path / "u.csv").read_text().splitlines()
     assert header.startswith("speed [rad/s],")
     assert '"rotor major semi-axis, 0-peak [m]"' in header

@@ -5,13 +5,15 @@ from __future__ import annotations
 import dataclasses
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.unbalance.bent_bearings import bent_bearings
+from hdrive_mbs.analysis.unbalance.between_speeds import between_speeds
 from hdrive_mbs.analysis.unbalance.response_peaks import ResponsePeak, peaks
 from hdrive_mbs.analysis.unbalance.speed_line import check_lateral, free_to_turn
 from hdrive_mbs.analysis.unbalance.unbalanced_line import DIRECTIONS, UnbalancedLine
@@ -66,6 +68,7 @@ class UnbalanceResponse(Result):
     bearings : b names
     force_x, force_y : complex amplitudes of the forces of the bearings on their housings [N], shape (g, s, b)
     peak_places, peak_speeds, peak_amplitudes, peak_widths : see ``peaks``
+    between : speeds, x, ... force_y at further speeds, where a phase turns quickly; ``refined`` puts them in
     seconds : CPU time
     """
 
@@ -85,6 +88,7 @@ class UnbalanceResponse(Result):
     peak_amplitudes: FloatArray
     peak_widths: FloatArray
     seconds: float
+    between: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     def __getitem__(self, place: str) -> PlaceResponse:
         return self.of(place)
@@ -127,12 +131,16 @@ class UnbalanceResponse(Result):
         x, y = (np.real(values[:, 0, k] @ turning) for values in (there.x, there.y))
         return np.asarray(x), np.asarray(y)
 
-    def refined(self, points: int = 24) -> UnbalanceResponse:
-        """The same with more speeds where narrow peaks need them, evenly spaced around each circle of the polar diagram."""
-        half = 0.5 * np.tan(np.linspace(-0.47 * np.pi, 0.47 * np.pi, points))
-        near = [peak.speed + peak.width * half for peak in self.peaks if np.isfinite(peak.width)]
-        every = np.unique(np.concatenate([self.speeds, *near]))
-        return self._again(every[(every >= self.speeds[0]) & (every <= self.speeds[-1])], self._extra())
+    def refined(self) -> UnbalanceResponse:
+        """The same with more speeds where a phase turns quickly, so many that no curve of the polar diagram has corners."""
+        if not self.between:
+            return self
+        speeds = np.concatenate([self.speeds, self.between["speeds"]])
+        order = np.argsort(speeds)
+        others: dict[str, Any] = {
+            name: np.concatenate([getattr(self, name), more], axis=1)[:, order] for name, more in self.between.items() if name != "speeds"
+        }
+        return dataclasses.replace(self, speeds=speeds[order], between={}, **others)
 
     def influence(self, plane: str) -> UnbalanceResponse:
         """Influence coefficients: the response to 1 kg m at angle 0 at a plane alone [m/(kg m), rad/(kg m), N/(kg m)]."""
@@ -237,13 +245,12 @@ def unbalance_response(
         unstable = instability(model.line, grid)
         if unstable is not None:
             raise AnalysisError(_unstable_text(scene, grid, unstable.speed, unstable.growth, unstable.frequency))
-        motion, forces = zip(*(model.response(group, grid) for group in range(len(model.groups))), strict=True)
         found = peaks(lambda at: model.major(at), grid, model.hints(), model.places, model.own_places())
-    displacement = np.array(motion)
-    force = np.array(forces)
+        values: dict[str, Any] = _amplitudes(model, grid)
+        between = _between(model, grid, values["x"][0], found)
     return UnbalanceResponse(
         scene=scene,
-        status="; ".join(["complete", *_notes(model, grid, displacement, found)]),
+        status="; ".join(["complete", *_notes(model, grid, values, found)]),
         settings={
             "speeds": f"{grid[0]:g} .. {grid[-1]:g} rad/s, {len(grid)} points",
             "extra": {place: tuple(float(v) for v in value) for place, value in (extra or {}).items()},
@@ -252,20 +259,32 @@ def unbalance_response(
         speeds=grid,
         places=model.places,
         frequency_ratios=np.array([ratio for ratio, _ in model.groups]),
-        x=displacement[..., 0],
-        y=displacement[..., 1],
-        psi=displacement[..., 2],
-        theta=displacement[..., 3],
         senses=model.senses,
         bearings=model.bearings,
-        force_x=force[..., 0],
-        force_y=force[..., 1],
         peak_places=tuple(peak.place for peak in found),
         peak_speeds=np.array([peak.speed for peak in found]),
         peak_amplitudes=np.array([peak.amplitude for peak in found]),
         peak_widths=np.array([peak.width for peak in found]),
         seconds=time.process_time() - started,
+        between=between,
+        **values,
     )
+
+
+def _amplitudes(model: UnbalancedLine, speeds: FloatArray) -> dict[str, ComplexArray]:
+    """x, y, psi, theta, (groups, s, places), and force_x, force_y, (groups, s, bearings)."""
+    motion, force = (np.array(part) for part in zip(*(model.response(group, speeds) for group in range(len(model.groups))), strict=True))
+    return {key: motion[..., k] for k, key in enumerate(DIRECTIONS)} | {"force_x": force[..., 0], "force_y": force[..., 1]}
+
+
+def _between(model: UnbalancedLine, grid: FloatArray, x: ComplexArray, found: list[ResponsePeak]) -> dict[str, np.ndarray]:
+    """What ``refined`` puts in."""
+    tops = np.array([peak.speed for peak in found])
+    endless = np.array([peak.amplitude == np.inf for peak in found], bool)
+    lost = grid[np.any(~np.isfinite(x), axis=1)]
+    hints = np.concatenate([model.hints(damped=True), tops[~endless]])
+    speeds = between_speeds(model.curves, grid, hints, np.concatenate([tops[endless], lost]))
+    return {"speeds": speeds, **_amplitudes(model, speeds)} if len(speeds) else {}
 
 
 def _checked(speeds: Sequence[float] | FloatArray) -> FloatArray:
@@ -293,7 +312,7 @@ def _unstable_text(scene: Scene, grid: FloatArray, speed: float, growth: float, 
     )
 
 
-def _notes(model: UnbalancedLine, grid: FloatArray, displacement: ComplexArray, found: list[ResponsePeak]) -> list[str]:
+def _notes(model: UnbalancedLine, grid: FloatArray, values: Mapping[str, ComplexArray], found: list[ResponsePeak]) -> list[str]:
     notes = []
     if model.line.varying:
         tops = np.array([peak.speed for peak in found if np.isfinite(peak.amplitude)])
@@ -301,7 +320,7 @@ def _notes(model: UnbalancedLine, grid: FloatArray, displacement: ComplexArray, 
     if len(model.groups) > 1:
         others = ", ".join(f"{ratio:.6g}" for ratio, _ in model.groups[1:])
         notes.append(f"unbalance at other frequencies too ({others} per reference speed), in further groups")
-    lost = grid[np.any(~np.isfinite(displacement), axis=(0, 2, 3))]
+    lost = grid[np.any([~np.isfinite(values[key]) for key in DIRECTIONS], axis=(0, 1, 3))]
     endless = sorted({f"{peak.speed:.6g}" for peak in found if peak.amplitude == np.inf} | {f"{speed:.6g}" for speed in lost}, key=float)
     if endless:
         notes.append(f"no steady amplitude at {', '.join(endless)} rad/s: an undamped critical speed; give bearings or foundations damping")

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hdrive_mbs.analysis.unbalance.channel_slopes import ChannelSlopes
 from hdrive_mbs.analysis.unbalance.deflection_line import force_places, lateral_places
+from hdrive_mbs.analysis.unbalance.response_peaks import NARROW
 from hdrive_mbs.analysis.unbalance.speed_line import SpeedLine
 from hdrive_mbs.analysis.unbalance.unbalance_forces import UnbalanceSource, by_frequency, rotor_sources, trial_source
 from hdrive_mbs.analysis.unbalance.whirl_orbit import WhirlOrbit
@@ -107,9 +108,16 @@ class UnbalancedLine:
         x, y = (q @ self.shapes[:, k].T for k in (0, 1))
         return WhirlOrbit(x, y, np.ones(x.shape)).major
 
-    def hints(self) -> FloatArray:
-        """Speeds at and beside the poles of the response."""
+    def curves(self, speeds: FloatArray) -> ComplexArray:
+        """x and y at the first frequency of the places that move differently, (s, 2 places)."""
+        _, q = self.amplitudes(0, speeds)
+        return np.asarray(q @ self.shapes[self.own_places(), :2].reshape(-1, self.shapes.shape[2]).T)
+
+    def hints(self, *, damped: bool = False) -> FloatArray:
+        """Speeds at and beside the poles of the response, those with damping alone if asked for."""
         poles = self.line.poles(self.groups[0][0])
+        if damped:
+            poles = poles[np.abs(poles.imag) > NARROW * np.abs(poles)]
         return np.concatenate([poles.real + share * np.abs(poles.imag) for share in (-3.0, -1.0, 0.0, 1.0, 3.0)])
 
     def own_places(self) -> list[int]:
