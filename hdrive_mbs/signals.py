@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.errors import AnalysisError, ParameterError
+from hdrive_mbs.summary import Summary
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -83,10 +84,10 @@ class TimeHistory:
         slope = None if self.slope is None else self.slope[inside]
         return TimeHistory(self.name, self.unit, self.times[inside], self.values[inside], slope)
 
-    def summary(self) -> dict[str, float]:
-        """Smallest, largest, time-weighted mean and rms, and last value."""
+    def summary(self) -> Summary:
+        """Smallest, largest, time-weighted mean and rms, and last value, by name: min, max, mean, rms, final."""
         t, y = self.times, self.values
         span = float(t[-1] - t[0])
         mean = float(np.trapezoid(y, t) / span) if span > 0.0 else float(y[0])
         rms = float(np.sqrt(np.trapezoid(y * y, t) / span)) if span > 0.0 else abs(float(y[0]))
-        return {"min": float(y.min()), "max": float(y.max()), "mean": mean, "rms": rms, "final": float(y[-1])}
+        return Summary(self.unit, {"min": float(y.min()), "max": float(y.max()), "mean": mean, "rms": rms, "final": float(y[-1])})

@@ -24,6 +24,7 @@ from hdrive_mbs.network.network import Body, Network
 from hdrive_mbs.progress import progress_bar
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray, TimeHistory
+from hdrive_mbs.summary import ChannelSummaries
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -96,9 +97,9 @@ class Response(Result):
         histories = [self[name] for name in channels]
         return write_csv(path, {"time [s]": self.times} | {f"{one.name} [{one.unit}]": one.values for one in histories})
 
-    def summary(self) -> dict[str, dict[str, float]]:
+    def summary(self) -> ChannelSummaries:
         """min, max, mean, rms and final value of each channel."""
-        return {name: self[name].summary() for name in self.values}
+        return ChannelSummaries({name: self[name].summary() for name in self.values})
 
 
 def simulate(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -89,7 +89,7 @@ def _solver(name: str, tolerance: float, step: float, is_rotor_line: bool) -> So
     return makers[name]()
 
 
-def _print(name: str, status: str, summary: dict[str, dict[str, float]], units: dict[str, str], few: list[str] | None) -> None:
+def _print(name: str, status: str, summary: Mapping[str, Mapping[str, float]], units: dict[str, str], few: list[str] | None) -> None:
     shown = few or [channel for channel in summary if channel.endswith((".speed", ".torque", ".twist"))]
     rows = [[f"{c} [{units[c]}]", *(summary[c][key] for key in ("min", "max", "mean", "final"))] for c in shown]
     print_table(f"{name}: {status}", ["channel", "min", "max", "mean", "final"], rows)

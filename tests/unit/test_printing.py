@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import inspect
+import json
+import pickle
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -53,6 +55,28 @@ def test_a_printed_array_shows_its_size_and_range() -> None:
 def test_a_printed_history_shows_span_and_range() -> None:
     history = hm.TimeHistory("a", "N m", np.array([0.0, 1.0, 2.0]), np.array([5.0, -1.0, 0.5]))
     assert repr(history) == "TimeHistory 'a' [N m]: 3 values from 0 s to 2 s, -1 to 5 N m"
+
+
+def test_every_figure_of_a_summary_is_printed_with_its_unit() -> None:
+    history = hm.TimeHistory("a", "N m", np.array([0.0, 1.0, 2.0]), np.array([4.0, 4.0, -2.0]))
+    # mean: (4 + 1)/2, rms: sqrt((16 + 10)/2), by trapezoids
+    assert repr(history.summary()) == "min -2 N m, max 4 N m, mean 2.5 N m, rms 3.60555 N m, final -2 N m"
+    assert str(hm.TimeHistory("a", "1", history.times, history.values).summary()).startswith("min -2, max 4,")
+    response = hm.simulate(build(), 0.05)
+    lines = str(response.summary()).splitlines()
+    assert [line.split()[0] for line in lines] == list(response.channels)
+    for line, unit in zip(lines, response.units.values(), strict=True):
+        assert line.count(f" {unit}, ") == 4
+        assert line.endswith(f" {unit}")
+
+
+def test_a_summary_is_a_dict_of_numbers_still() -> None:
+    response = hm.simulate(build(), 0.05)
+    summary = response.summary()
+    assert json.loads(json.dumps(summary)) == summary
+    copied = pickle.loads(pickle.dumps(summary))
+    assert (copied, repr(copied)) == (summary, repr(summary))
+    assert summary["gear.torque"]["max"] == response["gear.torque"].values.max()
 
 
 def test_help_lists_the_fields_with_unit_meaning_range_and_default() -> None:
