@@ -131,7 +131,7 @@ def _residuals(trial: Trial, columns: Mapping[str, FloatArray], whiten: bool) ->
 
 
 def _whitened(measured: Measured, values: FloatArray) -> FloatArray:
-    return Whitener(replace(measured, offset=0.0), np.ones(len(values), dtype=bool))(values)
+    return Whitener(replace(measured, offset=0.0), np.ones(len(values), dtype=bool), steady=True)(values)
 
 
 def _of(motion: Motion, line: Line, rows: FloatArray, slopes: FloatArray) -> Spectra:
