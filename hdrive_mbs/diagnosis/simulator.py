@@ -13,6 +13,7 @@ from hdrive_mbs.compiled.line import run_many
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines, Start
 from hdrive_mbs.diagnosis.noise import Whitener
+from hdrive_mbs.diagnosis.resting import repeated
 from hdrive_mbs.diagnosis.robust import Blocks
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.errors import ParameterError, SimulationError
@@ -63,7 +64,7 @@ class Simulator:
         at = 0
         for k, trial in enumerate(self.trials):
             for column, values in trial.columns.items():
-                there = np.isfinite(values)
+                there = np.isfinite(values) & ~repeated(trial.measured[column], values, every)
                 number = len(values[::every])
                 segments.append(Segment(k, column, slice(at, at + number)))
                 at += number
