@@ -66,9 +66,20 @@ def _quantities(kind: type[Effect]) -> dict[str, Quantity]:
 
 
 def _searched(kind: type[Effect]) -> bool:
-    """Whether it has something to search; a law over a whole series of numbers has too much."""
-    fields = [quantity for quantity in _quantities(kind).values() if quantity.typical is not None]
-    return bool(fields) and not any(quantity.sequence for quantity in fields)
+    """Whether it can be searched."""
+    return not _unsearchable(kind)
+
+
+def _unsearchable(kind: type[Effect]) -> str:
+    """Why a law cannot be searched: nothing of it can, a whole series of numbers would have to be, or a field has no value to begin at."""
+    typical = {name: quantity for name, quantity in _quantities(kind).items() if quantity.typical is not None}
+    if not typical or any(quantity.sequence for quantity in typical.values()):
+        return "has nothing to search: give its fields a typical range, parameter(..., typical=(low, high))"
+    for item in dataclasses.fields(kind):
+        without = item.default is dataclasses.MISSING and item.default_factory is dataclasses.MISSING
+        if without and item.name not in typical and item.name not in kind.starts:
+            return f"cannot be searched: {item.name!r} has no value to begin at; give it a default, a typical range or starts"
+    return ""
 
 
 def candidates(scene: Scene, kinds: Iterable[type[Effect]] | type[Effect] | None = None) -> list[Candidate]:
@@ -84,9 +95,7 @@ def candidates(scene: Scene, kinds: Iterable[type[Effect]] | type[Effect] | None
         if not (isinstance(kind, type) and issubclass(kind, Effect)):
             raise ParameterError(f"{kind!r} is no effect class; give classes that subclass Effect, like CoulombStribeckFriction.")
         if not _searched(kind):
-            raise ParameterError(
-                f"{kind.__name__} has nothing to search: give its fields a typical range, parameter(..., typical=(low, high))."
-            )
+            raise ParameterError(f"{kind.__name__} {_unsearchable(kind)}.")
         for place in _places(kind, network):
             name = _free_name(scene, kind)
             options = _options(kind)
@@ -167,7 +176,10 @@ def _few(kind: type[Effect], options: Mapping[str, tuple[Any, ...]]) -> dict[str
 def _made(kind: type[Effect], options: Mapping[str, tuple[Any, ...]]) -> Iterator[Effect]:
     """The effect at each combination of start values that is allowed."""
     combinations = list(itertools.product(*options.values()))
-    thinned = combinations[:: -(-len(combinations) // MOST)] if _continuous(kind) else combinations
+    stride = -(-len(combinations) // MOST) if _continuous(kind) else 1
+    # one of each row of so many, another place in the next row: along a row alone a field would keep one of its values
+    rows = [combinations[first : first + stride] for first in range(0, len(combinations), stride)]
+    thinned = [row[k % stride] for k, row in enumerate(rows) if k % stride < len(row)]
     for combination in thinned:
         try:
             yield kind(**dict(zip(options, combination, strict=True)))

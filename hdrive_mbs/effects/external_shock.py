@@ -18,12 +18,14 @@ class ExternalShock(LateralEffect):
 
     F = A sin(pi (t - s)/b) for s < t < s + b,  else 0,  along the direction d
 
+    A search does not try it: its beginning would have to be known to within its length.
+
     Source: half-sine pulse of shock tests (IEC 60068-2-27).  Leaves out what knocks, and a second knock: add one
     effect each.
     """
 
     amplitude: float = parameter("N", "A, peak", low=0.0, high=1e7, typical=(1.0, 1e4))
-    start: float = parameter("s", "s, beginning", low=0.0, high=1e6, typical=(0.0, 10.0))
+    start: float = parameter("s", "s, beginning", low=0.0, high=1e6)
     length: float = parameter("s", "b, length", default=2e-3, above=0.0, high=10.0, typical=(5e-4, 0.02))
     direction: float = parameter("rad", "d, from x towards y", default=0.0, typical=(-np.pi, np.pi))
 

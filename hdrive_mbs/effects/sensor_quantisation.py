@@ -20,9 +20,10 @@ class SensorQuantisation(SensorEffect):
 
     Source: rounding to the nearest step, as of an ideal converter; its error is at most r/2 and r/sqrt(12) rms.
     Leaves out missing codes and hysteresis of the converter.  A step of zero changes nothing.
+    A search does not try it: its steps show in the readings themselves, and no slope leads to their height.
     """
 
-    resolution: float = parameter("1", "r, step in the unit of the quantity", low=0.0, high=1e9, typical=(1e-7, 1.0))
+    resolution: float = parameter("1", "r, step in the unit of the quantity", low=0.0, high=1e9)
 
     family: ClassVar[str] = "sensor_quantisation"
     signature: ClassVar[str] = "one channel stands on steps of equal height; noise that does not fall with filtering when at rest"
