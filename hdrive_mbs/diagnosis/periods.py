@@ -54,6 +54,7 @@ class Periods:
 
     def standing_out(self, over: str, low: float, high: float) -> tuple[float, ...]:
         """Periods per radian of ``over`` ("turn", "time": [rad/s]) in a range, the clearest first; none where nothing was excited."""
+        highest = high
         if over == TIME:  # above half the sample rate a frequency looks like another one
             high = min(high, float(np.pi / max(trial.every * self._simulator.every for trial in self._simulator.trials)))
         rows = list(self._rows(over))
@@ -68,7 +69,20 @@ class Periods:
             power += _power(at, values, parts, width, count)[: count // 2]
         periods = np.asarray(2.0 * np.pi * np.arange(count // 2) / (count * width))
         inside = (periods >= low) & (periods <= high)
-        return _peaks(periods[inside], power[inside], 2.0 * np.pi / longest, 2.0 * np.pi / stretch)
+        found = _peaks(periods[inside], power[inside], 2.0 * np.pi / longest, 2.0 * np.pi / stretch)
+        return found if over == TURN else self._with_images(found, low, highest)
+
+    def _with_images(self, found: Sequence[float], low: float, high: float) -> tuple[float, ...]:
+        """Frequencies, each followed by those that look like it where only every few samples are compared, up to half the sample rate."""
+        sampled = max(trial.every for trial in self._simulator.trials)
+        rate, high = 2.0 * float(np.pi) / (sampled * self._simulator.every), min(high, float(np.pi) / sampled)
+        images = [
+            image
+            for frequency in found
+            for image in (frequency, *(k * rate + side * frequency for k in range(1, self._simulator.every + 1) for side in (-1.0, 1.0)))
+            if image == frequency or low <= image <= high
+        ]
+        return tuple(images[: 2 * MOST])
 
     def width(self, over: str) -> float:
         """What the longest record can just tell apart, in periods per radian of ``over``; infinite where nothing was excited."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -31,7 +31,7 @@ class BallPass(LateralEffect):
 
     amplitude: float = parameter("N", "A of the first harmonic, 0-peak, at the reference speed", low=0.0, high=1e6, typical=(0.05, 500.0))
     phase: float = parameter("rad", "p, phase at spin angle 0", default=0.0, typical=(-np.pi, np.pi))
-    order: float = parameter("1", "n, pulses per turn of the shaft", above=0.0, high=100.0, typical=(2.0, 7.0))
+    order: float = parameter("1", "n, pulses per turn of the shaft", above=0.0, high=100.0, typical=(2.0, 12.0))
     sharpness: float = parameter("1", "r, each harmonic over the one before", default=0.5, low=0.0, high=0.95, typical=(0.05, 0.85))
     direction: float = parameter("rad", "d, of the flaw, from x towards y", default=-0.5 * np.pi, typical=(-np.pi, np.pi))
     growth: float = parameter("1", "m, power of the speed with which it grows", default=0.0, low=0.0, high=4.0, typical=(0.0, 2.0))
@@ -40,6 +40,8 @@ class BallPass(LateralEffect):
     acts_on: ClassVar[str] = "bearing"
     family: ClassVar[str] = "ball_pass"
     excites: ClassVar[bool] = True
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"direction": (0.0, 0.5 * np.pi)}
+    decisive: ClassVar[tuple[str, ...]] = ("direction",)
     periodic: ClassVar[Mapping[str, str]] = {"order": "turn"}
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("amplitude", "phase"),)
     signature: ClassVar[str] = "pulses at an order of the spin that is no whole number, with its harmonics, at one housing"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -33,7 +33,7 @@ class BallPassHarmonics(LateralEffect):
     second_phase: float = parameter("rad", "p_2, phase at spin angle 0", default=0.0, typical=(-np.pi, np.pi))
     third_amplitude: float = parameter("N", "A_3 at order 3 n, 0-peak", default=0.0, low=0.0, high=1e6, typical=(0.05, 500.0))
     third_phase: float = parameter("rad", "p_3, phase at spin angle 0", default=0.0, typical=(-np.pi, np.pi))
-    order: float = parameter("1", "n, pulses per turn of the shaft", above=0.0, high=100.0, typical=(2.0, 7.0))
+    order: float = parameter("1", "n, pulses per turn of the shaft", above=0.0, high=100.0, typical=(2.0, 12.0))
     direction: float = parameter("rad", "d, from x towards y", default=-0.5 * np.pi, typical=(-np.pi, np.pi))
     growth: float = parameter("1", "m, power of the speed with which it grows", default=0.0, low=0.0, high=4.0, typical=(0.0, 2.0))
     reference_speed: float = parameter("rad/s", "w_0, where it has the amplitudes A_k", default=500.0, above=0.0)
@@ -41,6 +41,8 @@ class BallPassHarmonics(LateralEffect):
     acts_on: ClassVar[str] = "bearing"
     family: ClassVar[str] = "ball_pass"
     excites: ClassVar[bool] = True
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"direction": (0.0, 0.5 * np.pi)}
+    decisive: ClassVar[tuple[str, ...]] = ("direction",)
     periodic: ClassVar[Mapping[str, str]] = {"order": "turn"}
     leads: ClassVar[bool] = True
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -33,6 +33,8 @@ class GroundVibration(LateralEffect):
     acts_on: ClassVar[str] = "support"
     family: ClassVar[str] = "ground_vibration"
     excites: ClassVar[bool] = True
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"direction": (0.0, 0.5 * np.pi)}
+    decisive: ClassVar[tuple[str, ...]] = ("direction",)
     periodic: ClassVar[Mapping[str, str]] = {"frequency": "time"}
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("amplitude", "phase"),)
     signature: ClassVar[str] = "vibration at one frequency that stays where it is when the speed changes, largest at one housing"

@@ -26,8 +26,10 @@ class InnerRacePass(BallPass):
     what BallPass does, and a load zone of another width.
     """
 
+    order: float = parameter("1", "n, pulses per turn of the shaft", above=0.0, high=100.0, typical=(3.0, 14.0))
     load_direction: float = parameter("rad", "b, from x towards y", default=-0.5 * np.pi)
 
+    decisive: ClassVar[tuple[str, ...]] = ()
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"direction": (-0.5 * np.pi, 0.0, 0.5 * np.pi, np.pi)}
     signature: ClassVar[str] = "pulses at an order of the spin that is no whole number, with sidebands one order apart, at one housing"
 

@@ -76,6 +76,19 @@ def test_a_frequency_is_found_and_one_above_half_the_sample_rate_is_not_looked_f
     assert max(found) <= np.pi / 1e-3
 
 
+def test_a_frequency_that_every_few_samples_show_as_another_one_is_begun_at_too(simulator: Simulator, fitted: Fitted) -> None:
+    coarse = Simulator(simulator.trials, 2.5e-4, 4)
+    base = fit(coarse, fitted.hypothesis, np.zeros(fitted.hypothesis.size), steps=0)
+    residuals = np.random.default_rng(3).normal(size=coarse.size)
+    for segment in coarse.segments:
+        residuals[segment.span] += np.sin(1100.0 * coarse.trials[segment.trial].times[::4])
+    found = Periods(coarse, dataclasses.replace(base, residuals=residuals)).standing_out(TIME, 50.0, 5e3)
+    # 1100 rad/s, sampled at 250 Hz, looks like 2 pi 250 - 1100 = 470.8 rad/s
+    assert found[0] == pytest.approx(500.0 * np.pi - 1100.0, abs=np.pi / 1.6)
+    assert min(abs(item - 1100.0) for item in found) < np.pi / 1.6
+    assert max(found) <= np.pi / 1e-3
+
+
 def test_no_period_is_named_where_the_range_is_narrower_than_the_record_can_tell(simulator: Simulator, fitted: Fitted) -> None:
     narrow = 3.0 + 6.0 / turned(simulator, fitted)
     assert Periods(simulator, left(simulator, fitted, TURN, (3.0, 1.0))).standing_out(TURN, 3.0, narrow) == ()
@@ -94,7 +107,7 @@ class _Given:
 
 def test_laws_with_a_period_begin_at_what_stands_out_and_others_stay() -> None:
     scene = rotor_bench.bench().scene
-    kinds: list[type[hm.Effect]] = [hm.OilWhirlOnset, hm.BallPassHarmonics, hm.GroundVibration, hm.ExternalShock]
+    kinds: list[type[hm.Effect]] = [hm.OilWhirlOnset, hm.BallPassHarmonics, hm.GroundVibration, hm.RotorUnbalance]
     for suspect in suspects(Hypothesis(()), {}, candidates(scene, kinds)):
         periods = _Given({TURN: (0.43, 0.47), TIME: ()})
         begun = begun_at(suspect.all, periods)  # type: ignore[arg-type]
@@ -104,8 +117,9 @@ def test_laws_with_a_period_begin_at_what_stands_out_and_others_stay() -> None:
                 assert [(item.ratio, item.onset) for item in effects] == [  # type: ignore[attr-defined]
                     (ratio, onset) for ratio in (0.43, 0.47) for onset in hm.OilWhirlOnset.starts["onset"]
                 ]
-            case hm.BallPassHarmonics():  # three orders that it would begin at are one now
-                assert [item.order for item in effects] == [0.43, 0.47]  # type: ignore[attr-defined]
+            case hm.BallPassHarmonics():  # each order in two directions
+                assert [item.order for item in effects] == [0.43, 0.43, 0.47, 0.47]  # type: ignore[attr-defined]
+                assert {item.direction for item in effects} == {0.0, 0.5 * np.pi}  # type: ignore[attr-defined]
             case _:
                 assert [list(item.fields()) for item in effects] == [list(item.added[-1].effect.fields()) for item in suspect.all]
         assert {item.added[-1].name for item in begun} == {suspect.all[0].added[-1].name}
@@ -114,7 +128,7 @@ def test_laws_with_a_period_begin_at_what_stands_out_and_others_stay() -> None:
 def test_many_periods_and_many_starts_make_about_a_dozen_and_two_periods_at_least() -> None:
     scene = rotor_bench.bench().scene
     periods = _Given({TURN: (0.41, 0.43, 0.45, 0.46, 0.47, 0.48), TIME: ()})
-    for kind, starts, tried in ((hm.OilWhirlOnset, 3, 4), (hm.BallPassHarmonics, 1, 6)):
+    for kind, starts, tried in ((hm.OilWhirlOnset, 3, 4), (hm.BallPassHarmonics, 2, 6)):
         for suspect in suspects(Hypothesis(()), {}, candidates(scene, [kind])):
             begun = begun_at(suspect.all, periods)  # type: ignore[arg-type]
             name = next(iter(kind.periodic))
@@ -129,6 +143,13 @@ def test_a_law_whose_direction_is_tried_keeps_all_of_its_directions() -> None:
     for one in candidates(rotor_bench.bench().scene, [hm.InnerRacePass]):
         assert {item.effect.direction for item in one.starts} == set(hm.InnerRacePass.starts["direction"])  # type: ignore[attr-defined]
         assert len({item.effect.order for item in one.starts}) == 1  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("kind", [hm.BallPass, hm.BallPassHarmonics, hm.GroundVibration], ids=lambda kind: kind.__name__)
+def test_a_force_along_a_line_is_looked_at_along_two_axes(kind: type[hm.Effect]) -> None:
+    """At right angles to it its amplitude has no slope, and neither has its direction."""
+    for one in candidates(rotor_bench.bench().scene, [kind]):
+        assert {item.effect.direction for item in one.first} == {0.0, 0.5 * np.pi}  # type: ignore[attr-defined]
 
 
 def test_beside_a_period_lie_others_by_parts_of_what_the_records_tell_apart(simulator: Simulator, fitted: Fitted) -> None:
