@@ -21,11 +21,12 @@ _NOTHING = 1e-15
 class BearingClearance(BearingEffect):
     """The radial spring of a bearing acts beyond a gap; a film in the gap may carry a share.
 
-    F = a S(u) + d D u' + N u/r,   N = max((1 - a) S_n(p) + (1 - d) D_n p', 0) where p = r - c > 0, else 0
+    F = a S(u) + d D u' + N u/r + (1 - a) S_t(p),   N = max((1 - a) S_n(p) + (1 - d) D_n p', 0) where p = r - c > 0, else 0
 
     in place of S(u) + D u', for the displacement u of the ring, r = |u|; S and D are the spring and the damper that the
-    bearing has, S_n(p) and D_n what they do along u (k p and d_xx p' of a bearing that is alike all around).  a and d
-    are the shares of the film.  Ring and housing cannot pull at each other but for the film.  c = 0 with d = 1 is the bearing.
+    bearing has, S_n(p) and D_n what they do along u (k p and d_xx p' of a bearing that is alike all around), and S_t(p), while
+    N pushes, what the spring does across it (nothing for such a bearing).  a and d are the shares of the film.  Ring and
+    housing cannot pull at each other but for the film.  c = 0 with d = 1 is the bearing, where its spring pushes.
 
     Source: the bilinear contact of e.g. F. F. Ehrich, J. Vibration and Acoustics 110 (1988) 9, and J. Padovan, F. K. Choy,
     J. Turbomachinery 109 (1987) 527, with a Kelvin-Voigt contact that does not pull.  Leaves out the single rolling elements, what a
@@ -60,11 +61,13 @@ class BearingClearance(BearingEffect):
         r = np.sqrt(np.maximum(square, self.gap**2 + _NOTHING**2))
         along = {"x": x / r, "y": y / r}
         inside = {**s, **{key: (r - self.gap) * n for key, n in along.items()}}
-        spring = sum(n * law.spring(key, inside, v) for key, n in along.items())
+        springs = {key: law.spring(key, inside, v) for key in along}
+        spring = sum(n * springs[key] for key, n in along.items())
         rate = along["x"] * v["x"] + along["y"] * v["y"]
         closing = {**v, **{key: rate * n for key, n in along.items()}}
         damping = sum(n * law.damper(key, closing) for key, n in along.items())
         normal = np.maximum(self.normal((1.0 - self.film_stiffness) * spring, damping), 0.0)
-        contact = np.where(square > self.gap**2, normal, 0.0)
+        pushing = np.where(square > self.gap**2, np.where(normal > 0.0, 1.0, 0.0), 0.0)
+        across = {key: (1.0 - self.film_stiffness) * (springs[key] - spring * n) for key, n in along.items()}
         film = {key: (1.0 - self.film_stiffness) * law.spring(key, s, v) + (1.0 - self.film_damping) * law.damper(key, v) for key in along}
-        return {key: contact * n - film[key] for key, n in along.items()}
+        return {key: pushing * (normal * n + across[key]) - film[key] for key, n in along.items()}

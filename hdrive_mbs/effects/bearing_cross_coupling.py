@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hdrive_mbs.effects.bearing_effect import BearingEffect
+from hdrive_mbs.effects.speed_growth import grown
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.bearing_draft import Across, BearingDraft
 from hdrive_mbs.quantities import parameter
@@ -30,7 +31,7 @@ class BearingCrossCoupling(BearingEffect):
     comes from nowhere.
     """
 
-    stiffness: float = parameter("N/m", "q, force per displacement across it", low=-1e10, high=1e10, typical=(1e5, 5e7))
+    stiffness: float = parameter("N/m", "q, force per displacement across it", low=-1e10, high=1e10, typical=(1e2, 5e7))
     exponent: float = parameter("1", "n: how it grows with the spin; 0 not at all, 1 for films", default=0.0, low=0.0, high=4.0)
     reference_speed: float = parameter("rad/s", "w_0, spin at which the force is that of q", default=1000.0, above=0.0)
     asymmetry: float = parameter("1", "e, by which the two entries differ", default=0.0, low=-1.0, high=1.0)
@@ -40,14 +41,14 @@ class BearingCrossCoupling(BearingEffect):
     signature: ClassVar[str] = (
         "less damping of forward and more of backward whirl, in steps and blows; beyond a speed whirl at a natural frequency that grows"
     )
-    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"stiffness": (1e6, 5e6), "exponent": (0.0, 1.0, 2.0)}
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"stiffness": (1e6, 5e6, 1e3), "exponent": (0.0, 1.0, 2.0)}
 
     def added(self, s: Across, v: Across, law: BearingDraft) -> Mapping[str, Value]:
         x, y = s["x"], s["y"]
         size: Value = self.stiffness
         if self.exponent != 0.0:
             ratio = v["phi"] / self.reference_speed
-            size = size * (ratio if self.exponent == 1.0 else np.sign(ratio) * np.abs(ratio) ** self.exponent)
+            size = size * (ratio if self.exponent == 1.0 else np.sign(ratio) * grown(v["phi"], self.reference_speed, self.exponent))
         if self.fading != 0.0:
             size = size / (1.0 + self.fading * (x * x + y * y))
         return {"x": (1.0 + self.asymmetry) * size * y, "y": -(1.0 - self.asymmetry) * size * x}

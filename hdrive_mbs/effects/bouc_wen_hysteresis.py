@@ -20,8 +20,8 @@ class BoucWenHysteresis(MemoryTwistEffect):
 
     tau = T_h z,  dz/dt = (v / x_y) (1 - |z|^n (b sign(v z) + 1 - b))
 
-    with the rate of twist v.  The torque saturates at T_h; it adds T_h/x_y to the stiffness after
-    each reversal.
+    with the rate of twist v.  The torque saturates at T_h; after each reversal from
+    there it adds 2 b T_h/x_y to the stiffness.
 
     Source: Bouc 1967; Wen, J. Engineering Mechanics Division ASCE 102 (1976) 249, normalised as in
     Ikhouane, Rodellar, Systems with Hysteresis (Wiley 2007).  For b >= 1/2 it is passive with the

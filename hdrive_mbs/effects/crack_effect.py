@@ -29,7 +29,7 @@ class CrackEffect(Effect):
     The spin angle is that of the nearer end.  The torque on the spin is such that what an always open crack stores comes back.
     """
 
-    compliance: float = parameter("rad/(N m)", "c, extra angle per bending moment when open", low=0.0, high=1.0, typical=(1e-9, 1e-5))
+    compliance: float = parameter("rad/(N m)", "c, extra angle per bending moment when open", low=0.0, high=1.0, typical=(1e-9, 3e-4))
     cross_share: float = parameter("1", "e, compliance across over that about the front", default=0.0, low=0.0, high=1.0)
     position: float = parameter("1", "where it lies, as a share of the length from end a", low=0.0, high=1.0, typical=(0.05, 0.95))
     angle: float = parameter(

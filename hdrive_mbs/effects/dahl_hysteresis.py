@@ -46,11 +46,15 @@ class DahlHysteresis(MemoryTwistEffect):
 
     def state_rate(self, name: str, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
         left = 1.0 - state[name] * np.sign(rate)
-        return self._share(rate, state[name]) * rate / self.yield_twist * np.abs(left) ** self.exponent * np.sign(left)
+        return self._share(rate, state[name]) * rate / self.yield_twist * left * self._secant(left)
 
     def _share(self, rate: Value, z: Value) -> Value:
-        left = np.maximum(np.abs(1.0 - z * np.sign(rate)), 1e-9)
-        return followed_share(self.exponent * left ** (self.exponent - 1.0) * np.abs(rate) / self.yield_twist, self.fastest_rate)
+        slope = self.exponent * self._secant(1.0 - z * np.sign(rate))
+        return followed_share(slope * np.abs(rate) / self.yield_twist, self.fastest_rate)
+
+    def _secant(self, left: Value) -> Value:
+        """|left|^(n-1), which times left is D and times n the slope of D."""
+        return 1.0 if self.exponent == 1.0 else np.maximum(np.abs(left), 1e-9) ** (self.exponent - 1.0)
 
     def torque(self, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
         return self.torque_limit * mixed(self._share(rate, state["z"]), state["z"], 1.0, rate)

@@ -21,7 +21,7 @@ _NOTHING = 1e-15
 class DampedClearance(BearingEffect):
     """The radial spring of a bearing acts beyond a gap; its damper acts fully in contact and with a share in the gap.
 
-    F = S(p) u/r + D u'  where p = r - c > 0,  else  d D u'
+    F = S(p u/r) + D u'  where p = r - c > 0,  else  d D u'
 
     in place of S(u) + D u', for the displacement u of the ring, r = |u|; S and D are the spring and the damper that the
     bearing has.  d is the share of the film that is left in the gap.  c = 0 is the bearing.
@@ -49,6 +49,5 @@ class DampedClearance(BearingEffect):
         along = {"x": x / r, "y": y / r}
         inside = {**s, **{key: (r - self.gap) * n for key, n in along.items()}}
         touching = np.where(square > self.gap**2, 1.0, 0.0)
-        spring = touching * sum(n * law.spring(key, inside, v) for key, n in along.items())
         left = (1.0 - self.film_damping) * (1.0 - touching)
-        return {key: spring * n - law.spring(key, s, v) - left * law.damper(key, v) for key, n in along.items()}
+        return {key: touching * law.spring(key, inside, v) - law.spring(key, s, v) - left * law.damper(key, v) for key in along}

@@ -28,7 +28,7 @@ class DynamicUnbalance(Effect):
     inertia, of second order in it.
     """
 
-    couple: float = parameter("kg m^2", "C, product of inertia", low=0.0, high=10.0, typical=(1e-8, 1e-3))
+    couple: float = parameter("kg m^2", "C, product of inertia", low=0.0, high=10.0, typical=(1e-8, 1e-2))
     phase: float = parameter(
         "rad", "p, side of the heavy end at +z, from x towards y at spin angle 0", default=0.0, typical=(-np.pi, np.pi)
     )

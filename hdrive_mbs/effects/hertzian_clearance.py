@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
 
 from hdrive_mbs.effects.bearing_clearance import BearingClearance
 from hdrive_mbs.expression import Value
@@ -26,6 +29,8 @@ class HertzianClearance(BearingClearance):
     exponent: float = parameter("1", "power n: 10/9 for rollers, 3/2 for balls", default=10.0 / 9.0, low=1.0, high=3.0)
     reference_force: float = parameter("N", "F_0, at which the stiffness is that of the bearing", above=0.0, high=1e6, typical=(50.0, 5e3))
 
+    leads: ClassVar[bool] = False
+
     def normal(self, spring: Value, damping: Value) -> Value:
-        contact = self.reference_force * (spring / (self.exponent * self.reference_force)) ** self.exponent
+        contact = self.reference_force * (np.maximum(spring, 0.0) / (self.exponent * self.reference_force)) ** self.exponent
         return contact * (1.0 + (1.0 - self.film_damping) * damping / self.reference_force)

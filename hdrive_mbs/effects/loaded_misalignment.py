@@ -31,7 +31,7 @@ class LoadedMisalignment(Misalignment):
     growth: float = parameter("1/(N m)", "g, growth of the forces with the torque", low=0.0, high=1e3, typical=(1e-3, 0.3))
     lever: float = parameter("m", "l, how far beyond the place the force acts along +z", default=0.0, typical=(-0.3, 0.3))
 
-    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"roundness": (0.0, 1.0), "growth": (0.01,)}
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {**Misalignment.starts, "growth": (0.01,)}
     signature: ClassVar[str] = "vibration twice per turn, with some once and three times, that grows with the torque"
 
     def factor(self, draft: Draft, place: str) -> Callable[[Moment], Value]:

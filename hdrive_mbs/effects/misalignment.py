@@ -37,14 +37,14 @@ class Misalignment(LateralEffect):
     roundness: float = parameter(
         "1", "e, half axis across d over the one along d, negative against the spin", default=1.0, low=-2.0, high=2.0, typical=(-1.0, 1.0)
     )
-    direction: float = parameter("rad", "d, of the major axis, from x towards y", default=0.0)
+    direction: float = parameter("rad", "d, of the major axis, from x towards y", default=0.0, typical=(-0.5 * np.pi, 0.5 * np.pi))
     lever: float = parameter("m", "l, how far beyond the place the force acts along +z", default=0.0)
 
     acts_on: ClassVar[str] = "drive end"
     family: ClassVar[str] = "misalignment"
     excites: ClassVar[bool] = True
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("once", "once_phase"), ("twice", "twice_phase"), ("thrice", "thrice_phase"))
-    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"roundness": (0.0, 1.0)}
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"roundness": (0.0, 1.0), "direction": (0.0, 0.5 * np.pi)}
     signature: ClassVar[str] = (
         "vibration twice per turn, with some once and three times, that resonates at half a critical speed and does not grow with speed"
     )

@@ -10,6 +10,7 @@ import numpy as np
 
 from hdrive_mbs.effects.effect import MemoryTorqueEffect
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE, followed_share, mixed
+from hdrive_mbs.effects.speed_growth import grown
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
 
@@ -51,7 +52,7 @@ class PreslidingFriction(MemoryTorqueEffect):
         size = self.coulomb * (1.0 + self.asymmetry * np.sign(speed))
         if self.drop == 0.0:
             return size
-        return size * (1.0 + self.drop / (1.0 + np.abs(speed / self.stribeck_speed) ** self.stribeck_exponent))
+        return size * (1.0 + self.drop / (1.0 + grown(speed, self.stribeck_speed, self.stribeck_exponent)))
 
     def states(self) -> Mapping[str, str]:
         return {"torque": "N m"} if self.coulomb > 0.0 else {}

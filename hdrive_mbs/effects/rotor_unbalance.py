@@ -27,7 +27,7 @@ class RotorUnbalance(Effect):
     rotor gets no heavier.
     """
 
-    unbalance: float = parameter("kg m", "U, mass times distance from the axis", low=0.0, high=1.0, typical=(1e-7, 5e-3))
+    unbalance: float = parameter("kg m", "U, mass times distance from the axis", low=0.0, high=1.0, typical=(1e-7, 5e-2))
     phase: float = parameter("rad", "p, from x towards y at spin angle 0", default=0.0, typical=(-np.pi, np.pi))
     lever: float = parameter("m", "l, how far its plane lies from that of the rotor along +z", default=0.0, typical=(-0.1, 0.1))
 

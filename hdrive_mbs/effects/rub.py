@@ -33,7 +33,7 @@ class Rub(LateralEffect):
     stiffness: float = parameter("N/m", "k of the wall", low=0.0, high=1e12, typical=(1e5, 1e8))
     damping: float = parameter("N s/m", "d of the wall", default=0.0, low=0.0, high=1e7)
     friction: float = parameter("1", "mu", default=0.0, low=0.0, high=2.0, typical=(0.02, 0.3))
-    radius: float = parameter("m", "R of the surface that rubs", above=0.0, high=10.0, typical=(0.02, 0.2))
+    radius: float = parameter("m", "R of the surface that rubs", above=0.0, high=10.0, typical=(2e-3, 0.2))
     centre_x: float = parameter("m", "centre of the ring in x", default=0.0, low=-0.1, high=0.1, typical=(-1e-4, 1e-4))
     centre_y: float = parameter("m", "centre of the ring in y", default=0.0, low=-0.1, high=0.1, typical=(-1e-4, 1e-4))
     exponent: float = parameter("1", "n", default=1.0, low=1.0, high=3.0)

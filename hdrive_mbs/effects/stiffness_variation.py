@@ -29,7 +29,7 @@ class StiffnessVariation(Effect):
     work by which the spring grows stiffer.  U is found by Gauss's rule with four points, exact for
     laws up to the seventh power; at corners of a law the small reaction is off by some per cent.
 
-    Source: parametric excitation of gears, e.g. Kahraman, Singh, J. Sound and Vibration 142 (1990) 49;
+    Source: parametric excitation of gears, e.g. Kahraman, Singh, J. Sound and Vibration 146 (1991) 135;
     in harmonic drives the number of loaded teeth changes twice per turn of the wave generator.
     Leaves out a change of damping or lost motion with angle; other orders are further effects.
     """

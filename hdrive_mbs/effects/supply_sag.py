@@ -27,7 +27,7 @@ class SupplySag(MotorEffect):
     """
 
     sag: float = parameter("N m s/rad", "s, fall of the limit per speed", low=0.0, high=1e3, typical=(1e-4, 0.5))
-    torque_limit: float = parameter("N m", "limit T_L at standstill", above=0.0, typical=(0.5, 100.0))
+    torque_limit: float = parameter("N m", "limit T_L at standstill", above=0.0, typical=(0.5, 2e3))
 
     family: ClassVar[str] = "supply_sag"
     signature: ClassVar[str] = "torque stays below its command at high speed and torque only; run-ups that fall behind near full speed"

@@ -138,6 +138,36 @@ def test_unbalanced_rotor_in_a_gap_moves_as_scipy_says(kind: str) -> None:
     np.testing.assert_allclose(force, known, rtol=0.0, atol=1e-9 * np.max(np.abs(known)))
 
 
+@pytest.mark.parametrize("effect", [hm.BearingClearance(gap=0.0), hm.DampedClearance(gap=0.0)], ids=lambda effect: type(effect).__name__)
+def test_without_a_gap_it_is_the_bearing_also_one_that_pushes_across(effect: Effect) -> None:
+    skew = hm.LinearBearing.isotropic(radial=STIFFNESS, damping=DAMPING, tilt=1e3, axial=1e4).replacing(
+        stiffness_xy=0.2 * STIFFNESS, stiffness_yx=-0.2 * STIFFNESS, stiffness_yy=0.5 * STIFFNESS
+    )
+    scene = hm.Scene(
+        name="skew",
+        parts={"disc": hm.Rotor(mass=MASS, polar_inertia=0.04, transverse_inertia=0.0206), "bearing": hm.Bearing(law=skew)},
+        connections=[("disc", "bearing")],
+    )
+    moved = {"disc.x": 1e-6, "disc.y": 1e-6}
+    bare, changed = (one.network().accelerations(state(one, moved)) for one in (scene, scene.with_effect(effect, at="bearing")))
+    assert bare["disc.x"] * MASS == pytest.approx(-1.2e-6 * STIFFNESS)
+    for name, value in bare.items():
+        assert changed[name] == pytest.approx(value, rel=1e-9, abs=1e-9), name
+
+
+def test_a_contact_that_tilting_pulls_open_does_not_push() -> None:
+    stiffness = np.diag([STIFFNESS, STIFFNESS, 1e4, 1e3, 1e3, 0.0])
+    stiffness[0, 4] = stiffness[4, 0] = 2e5
+    law = hm.LinearBearing.from_matrices(stiffness=stiffness, damping=np.zeros((6, 6)))
+    scene = hm.Scene(
+        name="tilting",
+        parts={"disc": hm.Rotor(mass=MASS, polar_inertia=0.04, transverse_inertia=0.0206), "bearing": hm.Bearing(law=law)},
+        connections=[("disc", "bearing")],
+    ).with_effect(hm.HertzianClearance(gap=1e-6, film_damping=1.0, reference_force=100.0), at="bearing")
+    found = scene.network().accelerations(state(scene, {"disc.x": 2e-6, "disc.theta": -1e-3}))
+    assert found["disc.x"] == pytest.approx(0.0, abs=1e-9)
+
+
 def test_rotor_rests_on_the_race_below_the_gap() -> None:
     """y = -(c + m g/k)."""
     scene = jeffcott(weight=True).with_effect(hm.BearingClearance(gap=1e-5), at="bearing")
@@ -289,6 +319,17 @@ def test_cross_coupling_that_grows_with_the_spin_turns_with_it(spin: float, expo
     at = np.ix_(*[[system.names.index(name) for name in ("disc.x", "disc.y")]] * 2)
     q = math.copysign(2e6 * 0.6**exponent, spin)
     np.testing.assert_allclose(system.stiffness[at], [[STIFFNESS, q], [-q, STIFFNESS]], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("effect", "at"),
+    [
+        *((hm.BearingCrossCoupling(stiffness=1e5, exponent=exponent), "bearing") for exponent in (0.5, 1.0, 2.5)),
+        (hm.PreslidingFriction(coulomb=1.0, drop=0.3, stribeck_exponent=0.75, presliding=1e-3), "disc"),
+    ],
+)
+def test_what_depends_on_a_power_of_the_speed_has_a_slope_at_standstill(effect: Effect, at: str) -> None:
+    assert np.isfinite(hm.whirl_modes(jeffcott().with_effect(effect, at=at), 0.0).eigenvalues).all()
 
 
 def test_cross_coupling_that_fades_leaves_a_circle_whose_radius_is_known() -> None:
