@@ -161,6 +161,7 @@ ROTOR_EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.ShaftBow(amplitude=1e-5, phase=0.2), "rotor"),
     (hm.ShaftKink(angle=1e-4, phase=0.2, share=0.3), "shaft.element_2"),
     (hm.Misalignment(once=1.0, twice=2.0, twice_phase=0.3, roundness=0.5, lever=0.02), "bearing"),
+    (hm.LoadedMisalignment(twice=2.0, growth=0.02, lever=0.02), "bearing"),
     (hm.OilWhirl(amplitude=3.0, ratio=0.46, onset=300.0), "bearing"),
     (hm.OilWhirlOnset(amplitude=3.0, ratio=0.46, onset=300.0), "bearing"),
     (hm.BallPass(amplitude=3.0, order=3.57, sharpness=0.3), "bearing"),
