@@ -31,9 +31,9 @@ def repeated(measured: Measured, values: FloatArray, every: int = 1) -> Mask:
         return again
     edges = np.flatnonzero(np.diff(values) != 0.0) + 1
     starts, ends = np.concatenate([[0], edges]), np.concatenate([edges, [len(values)]])
-    for first, last in zip(starts, ends, strict=True):
-        if last - first >= LONG:
-            again[first:last] = True
-            kept = -(-first // every) * every
-            again[kept if kept < last else first] = False
+    long = ends - starts >= LONG
+    for first, last in zip(starts[long], ends[long], strict=True):
+        again[first:last] = True
+        kept = -(-first // every) * every
+        again[kept if kept < last else first] = False
     return again

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from hdrive_mbs.effects.build_up import secant
 from hdrive_mbs.effects.effect import MemoryTorqueEffect
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE, followed_share, mixed
 from hdrive_mbs.expression import Value
@@ -49,17 +50,13 @@ class DahlFriction(MemoryTorqueEffect):
         if self.exponent == 1.0:
             return share * (speed - np.abs(speed) * state["z"]) / self.presliding
         left = 1.0 - state["z"] * np.sign(speed)
-        return share * speed / self.presliding * left * self._secant(left)
+        return share * speed / self.presliding * left * secant(left, self.exponent)
 
     def _share(self, speed: Value, z: Value) -> Value:
         if self.exponent == 1.0:
             return followed_share(np.abs(speed) / self.presliding, self.fastest_rate)
-        slope = self.exponent * self._secant(1.0 - z * np.sign(speed))
+        slope = self.exponent * secant(1.0 - z * np.sign(speed), self.exponent)
         return followed_share(slope * np.abs(speed) / self.presliding, self.fastest_rate)
-
-    def _secant(self, left: Value) -> Value:
-        """|left|^(n-1), which times left is the build-up and times n its slope."""
-        return np.maximum(np.abs(left), 1e-9) ** (self.exponent - 1.0)
 
     def torque(self, time: Value, angle: Value, speed: Value, state: Mapping[str, Value]) -> Value:
         return -self.coulomb * mixed(self._share(speed, state["z"]), state["z"], 1.0, speed)

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from hdrive_mbs.effects.build_up import secant
 from hdrive_mbs.effects.effect import MemoryTwistEffect
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE, followed_share, mixed
 from hdrive_mbs.expression import Value
@@ -46,15 +47,11 @@ class DahlHysteresis(MemoryTwistEffect):
 
     def state_rate(self, name: str, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
         left = 1.0 - state[name] * np.sign(rate)
-        return self._share(rate, state[name]) * rate / self.yield_twist * left * self._secant(left)
+        return self._share(rate, state[name]) * rate / self.yield_twist * left * secant(left, self.exponent)
 
     def _share(self, rate: Value, z: Value) -> Value:
-        slope = self.exponent * self._secant(1.0 - z * np.sign(rate))
+        slope = self.exponent * secant(1.0 - z * np.sign(rate), self.exponent)
         return followed_share(slope * np.abs(rate) / self.yield_twist, self.fastest_rate)
-
-    def _secant(self, left: Value) -> Value:
-        """|left|^(n-1), which times left is D and times n the slope of D."""
-        return 1.0 if self.exponent == 1.0 else np.maximum(np.abs(left), 1e-9) ** (self.exponent - 1.0)
 
     def torque(self, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
         return self.torque_limit * mixed(self._share(rate, state["z"]), state["z"], 1.0, rate)

@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from hdrive_mbs.effects.build_up import secant
 from hdrive_mbs.effects.effect import MemoryTorqueEffect
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE, followed_share, mixed
 from hdrive_mbs.effects.speed_growth import grown
@@ -60,16 +61,12 @@ class PreslidingFriction(MemoryTorqueEffect):
     def state_rate(self, name: str, time: Value, angle: Value, speed: Value, state: Mapping[str, Value]) -> Value:
         left = 1.0 - state[name] * np.sign(speed) / self.sliding_torque(speed)
         share = self._share(speed, state[name])
-        return share * self.coulomb / self.presliding * speed * left * self._secant(left)
+        return share * self.coulomb / self.presliding * speed * left * secant(left, self.exponent)
 
     def _share(self, speed: Value, torque: Value) -> Value:
         sliding = self.sliding_torque(speed)
-        slope = self.exponent * self._secant(1.0 - torque * np.sign(speed) / sliding)
+        slope = self.exponent * secant(1.0 - torque * np.sign(speed) / sliding, self.exponent)
         return followed_share(slope * np.abs(speed) * (self.coulomb / self.presliding) / sliding, self.fastest_rate)
-
-    def _secant(self, left: Value) -> Value:
-        """|left|^(n-1), which times left is D and times n the slope of D."""
-        return 1.0 if self.exponent == 1.0 else np.maximum(np.abs(left), 1e-9) ** (self.exponent - 1.0)
 
     def torque(self, time: Value, angle: Value, speed: Value, state: Mapping[str, Value]) -> Value:
         return -sum(mixed(self._share(speed, state[name]), state[name], self.sliding_torque(speed), speed) for name in self.states())
