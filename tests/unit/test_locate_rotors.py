@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Sequence
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,9 +13,11 @@ from scipy.linalg import expm
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
+from hdrive_mbs.diagnosis.beginnings import begun_at
 from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.force_orders import ForceOrders
+from hdrive_mbs.diagnosis.ground import screen_from
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.locate import Localiser
 from hdrive_mbs.diagnosis.locate.motion import KnownForce, columns_of
@@ -24,6 +27,7 @@ from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.periods import Periods
 from hdrive_mbs.diagnosis.result import NOWHERE
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.suspects import suspects
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.unknowns import Factor
@@ -282,3 +286,25 @@ def test_a_flaw_of_an_inner_race_is_named_with_its_order_from_the_force_at_its_b
     found = best.fitted.hypothesis.values(best.fitted.z)
     assert next(value for path, value in found.items() if path.endswith(".order")) == pytest.approx(order, abs=3e-4)
     assert best.fitted.chi_fit < 0.5 * null.chi_fit
+
+
+def test_a_vibration_is_seen_in_a_first_look_whatever_its_direction() -> None:
+    """At right angles to where it is begun its amplitude has no slope, and neither has its direction."""
+    push = KnownForce("ground", {"bearing_2.housing.y": 1.0}, TIMES, np.asarray(3.0 * np.sin(600.0 * TIMES + 0.4)))
+    simulator = localiser(push, bare=dataclasses.replace(trial(), held_out=TIMES > 1.3))._simulator
+    null = fit(simulator, NOMINAL, ORIGIN, steps=0)
+    above_noise = null.cost - 0.5 * np.count_nonzero(simulator.fit)
+    assert above_noise > 1e3
+    suspects_of = suspects(NOMINAL, {}, candidates(simulator.trials[0].scene, [hm.GroundVibration]))
+    [suspect] = [item for item in suspects_of if item.label[1] == "bearing_2"]
+    begun = begun_at(suspect.first, Periods(simulator, null))
+    screen = screen_from(simulator, null)
+
+    def gained(starts: Sequence[Hypothesis]) -> float:
+        look = screen.look(starts)
+        assert look is not None
+        return null.cost - look.cost
+
+    along_x_alone = [item for item in begun if item.added[-1].effect.direction == 0.0]  # type: ignore[attr-defined]
+    assert gained(along_x_alone) < 0.1 * above_noise
+    assert gained(begun) > 0.5 * above_noise
