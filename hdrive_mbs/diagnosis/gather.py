@@ -35,6 +35,8 @@ SINGLES, LAST, LONG = 3, 4, 20
 """Labels that are fitted on all samples, and steps that this may take for them and for the best."""
 EXACT = 1e-6
 """Relative change of the cost that ends these last fits where little is left."""
+RIVAL = 25.0
+"""Log-likelihood behind the best within which another label is fitted as far as it: what so little tells apart has to be fitted alike."""
 SECOND_LOOKS = 60
 """Of the labels that looked best alone, at which a second cause is looked for."""
 JOINED = 3
@@ -157,10 +159,10 @@ def gather(
     ]
     leader = min((*serious, *double), key=lambda item: item.fitted.cost, default=None)
     for item in (*serious, *double):
-        far = item is leader or near
+        rivals = leader is not None and item.fitted.cost < leader.fitted.cost + RIVAL
         sharp = EXACT if item.fitted.chi_fit < NEAR else FINE
-        steps = LONG if far else 1 if leader is not None and beyond(item.fitted, leader.fitted) else LAST
-        tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, steps, sharp, hops=HOPS if item is leader else 0))
+        steps = LONG if rivals or near else 1 if leader is not None and beyond(item.fitted, leader.fitted) else LAST
+        tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, steps, sharp, hops=HOPS if rivals else 0))
     nominal, refitted, *others = team.map(run_task, fine, tasks, partial(said, "all samples"))
     if nominal is None or refitted is None:
         raise AnalysisError("The nominal scene cannot be simulated through all of the records; look at its start values and inputs.")
