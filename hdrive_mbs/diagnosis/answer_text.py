@@ -8,16 +8,20 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.locate.latent_force import LatentForce, TurnedForce
+from hdrive_mbs.diagnosis.located import Located
+from hdrive_mbs.diagnosis.result import Place
 from hdrive_mbs.diagnosis.screening import Look
 from hdrive_mbs.diagnosis.unknowns import Factor
 
-ANSWERS: tuple[type, ...] = (Look, Fitted, Hypothesis, Added, Factor)
+ANSWERS: tuple[type, ...] = (Look, Fitted, Hypothesis, Added, Factor, Located, Place, LatentForce, TurnedForce)
 """Classes that an answer may hold besides those of its question: effects and their laws."""
 
 
@@ -74,6 +78,8 @@ def _classes(value: Any, known: dict[str, type], met: set[int]) -> None:
     if isinstance(value, (tuple, list)):
         for item in value:
             _classes(item, known, met)
+    elif isinstance(value, partial):
+        _classes((value.args, value.keywords), known, met)
     elif isinstance(value, Mapping):
         for item in value.values():
             _classes(item, known, met)

@@ -29,10 +29,9 @@ def at_the_place(
     team: Team, coarse: Simulator, base: Fitted, gap: Located, tried: Sequence[Candidate], report: Report
 ) -> tuple[Found, ...]:
     """Laws with a period at the place where the gap most probably lies, fitted; none where no place is likely enough."""
-    place = gap.places[0]
-    if place.at == NOWHERE or place.probability < SURE:
+    if not gap.places or gap.places[0].at == NOWHERE or gap.places[0].probability < SURE:
         return ()
-    there = [item for item in those_at(place.at, tried) if item.kind.periodic]
+    there = [item for item in those_at(gap.places[0].at, tried) if item.kind.periodic]
     if not there:
         return ()
 

@@ -24,7 +24,6 @@ from hdrive_mbs.diagnosis.gap import gaps
 from hdrive_mbs.diagnosis.gather import Evidence, gather
 from hdrive_mbs.diagnosis.input_checks import check_records, check_trials, not_compared
 from hdrive_mbs.diagnosis.journal import Journal
-from hdrive_mbs.diagnosis.located import Located, located
 from hdrive_mbs.diagnosis.pictured import pictured
 from hdrive_mbs.diagnosis.result import Cause, Diagnosis, Separation
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -136,11 +135,12 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
     notes: list[str] = []
     claimed = () if claim.kind in ("none", "unknown") or claim.fit is None else _causes(claim.fit, claim, improved, bench.groups)
     extras: dict[str, object] = {}
-    where = _located(evidence, notes)
+    if evidence.place.doubt:
+        notes.append(f"Place of the gap: {evidence.place.doubt}")
     if pictures:
         extras["traces"] = traces(evidence.fine, evidence.nominal, evidence.null, best)
         extras["domain"] = domain_map(evidence.fine, evidence.null, best)
-        extras["forces"] = tuple(pictured(force) for force in (where.forces if where else ()))
+        extras["forces"] = tuple(pictured(force) for force in evidence.place.forces)
     if claim.tied:
         extras["next_records"] = _next_records(bench, records, evidence, claim, notes)
     notes += _verified(evidence.fine, best)
@@ -153,7 +153,7 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
         causes=claimed,
         indistinguishable=claim.tied,
         ranking=_ranking(evidence, claim),
-        where=where.places if where else (),
+        where=evidence.place.places,
         gaps=gaps(evidence.fine, evidence.nominal.residuals, evidence.null.residuals, best.residuals),
         parameters=nominal_estimates(best, bench.scene),
         notes=tuple(notes),
@@ -161,18 +161,6 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
         versions=_versions(),
         **extras,  # type: ignore[arg-type]
     )
-
-
-def _located(evidence: Evidence, notes: list[str]) -> Located | None:
-    """Where the gap lies, with a note where that is in doubt; None, and a note, where it cannot be found."""
-    try:
-        found = evidence.place or located(evidence.fine, evidence.nominal, evidence.null)
-    except HdriveError as error:
-        notes.append(f"The place of the gap was not looked for: {error}")
-        return None
-    if found.doubt:
-        notes.append(f"Place of the gap: {found.doubt}")
-    return found
 
 
 def _next_records(bench: Bench, records: Sequence[Record], evidence: Evidence, claim: Claim, notes: list[str]) -> tuple[Separation, ...]:

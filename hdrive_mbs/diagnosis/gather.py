@@ -8,20 +8,20 @@ from functools import partial
 
 import numpy as np
 
+from hdrive_mbs.diagnosis.all_samples import as_given, on_all_samples
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate
-from hdrive_mbs.diagnosis.choosing import beyond, enough
+from hdrive_mbs.diagnosis.choosing import enough
 from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.located import Located, bends, located
+from hdrive_mbs.diagnosis.located import Located, bends, localised_about, located
 from hdrive_mbs.diagnosis.pairs import alone, joined, swapped
-from hdrive_mbs.diagnosis.search import HOPS, Depth, Report, Search, fit_nominal, search
+from hdrive_mbs.diagnosis.search import Depth, Report, Search, fit_nominal, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import suspects
-from hdrive_mbs.diagnosis.tasks import FINE, NEAR, Found, Task, run_task, scored
+from hdrive_mbs.diagnosis.tasks import Found, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import left
-from hdrive_mbs.errors import AnalysisError, HdriveError
 
 LEFT = 1.1
 """Mean square left by the best single cause, on what its fit saw and did not see, above which a second one is looked for; more beside a
@@ -31,12 +31,8 @@ TAKEN = 0.05
 for: beside one that explains next to nothing a second would be another first."""
 SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 """Of the search for a second cause."""
-SINGLES, LAST, LONG = 3, 4, 20
-"""Labels that are fitted on all samples, and steps that this may take for them and for the best."""
-EXACT = 1e-6
-"""Relative change of the cost that ends these last fits where little is left."""
-RIVAL = 25.0
-"""Log-likelihood behind the best within which another label is fitted as far as it: what so little tells apart has to be fitted alike."""
+SINGLES = 3
+"""Labels that are fitted on all samples."""
 SECOND_LOOKS = 60
 """Of the labels that looked best alone, at which a second cause is looked for."""
 JOINED = 3
@@ -50,7 +46,7 @@ class Evidence:
     fine : all samples;  nominal, null : the model as given and refitted, on these
     single : search for one cause;  pair : for a second one besides the best first, if that left something
     singles : the best labels on all samples, best first;  pairs : likewise with two causes; log odds over the null
-    place : where the gap lies, if the search asked for it
+    place : where the gap lies
     """
 
     fine: Simulator
@@ -60,7 +56,7 @@ class Evidence:
     pair: Search | None
     singles: tuple[Found, ...]
     pairs: tuple[Found, ...]
-    place: Located | None = None
+    place: Located
 
 
 def wants_second(null: Fitted, first: Found, samples: int) -> bool:
@@ -84,13 +80,10 @@ def _there(
     if not bends(fine) or min((left(item.fitted) for item in single.found), default=left(null)) <= enough(null, LEFT):
         return None, ()
     said("looking where the gap lies", 0, 1)
-    nominal = run_task(fine, Task(null.hypothesis, np.zeros_like(null.z), None, 0, 1.0))
+    nominal = as_given(fine, null)
     if nominal is None:
         return None, ()
-    try:
-        place = located(fine, nominal, null)
-    except HdriveError:
-        return None, ()
+    place = located(fine, localised_about(fine, nominal, null))
     return place, at_the_place(team, coarse, null, place, tried, partial(_said, said, "at the place of the gap"))
 
 
@@ -151,24 +144,11 @@ def gather(
     if double:
         single = _with(single, alone(team, coarse, double[0], suspects(null.hypothesis, groups, tried)))
     serious = single.labels[:SINGLES]
-    near = null.chi_fit < NEAR
-    share = EXACT if near else FINE
-    tasks = [
-        Task(null.hypothesis, np.zeros_like(null.z), None, 0, 1.0),
-        Task(null.hypothesis, null.z, None, LONG, share, hops=HOPS if near else 0),
-    ]
-    leader = min((*serious, *double), key=lambda item: item.fitted.cost, default=None)
-    for item in (*serious, *double):
-        rivals = leader is not None and item.fitted.cost < leader.fitted.cost + RIVAL
-        sharp = EXACT if item.fitted.chi_fit < NEAR else FINE
-        steps = LONG if rivals or near else 1 if leader is not None and beyond(item.fitted, leader.fitted) else LAST
-        tasks.append(Task(item.fitted.hypothesis, item.fitted.z, None, steps, sharp, hops=HOPS if rivals else 0))
-    nominal, refitted, *others = team.map(run_task, fine, tasks, partial(said, "all samples"))
-    if nominal is None or refitted is None:
-        raise AnalysisError("The nominal scene cannot be simulated through all of the records; look at its start values and inputs.")
+    last = on_all_samples(team, fine, null, [item.fitted for item in (*serious, *double)], place, partial(said, "all samples"))
     final = [
-        None if fitted is None else scored(Found(item.suspect, fitted), refitted)
-        for item, fitted in zip((*serious, *double), others, strict=True)
+        None if fitted is None else scored(Found(item.suspect, fitted), last.refitted)
+        for item, fitted in zip((*serious, *double), last.others, strict=True)
     ]
     singles = sorted(filter(None, final[: len(serious)]), key=lambda item: -item.log_odds)
-    return Evidence(fine, nominal, refitted, single, pair, tuple(singles), tuple(filter(None, final[len(serious) :])), place)
+    pairs = tuple(filter(None, final[len(serious) :]))
+    return Evidence(fine, last.nominal, last.refitted, single, pair, tuple(singles), pairs, last.place)

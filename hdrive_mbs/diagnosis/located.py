@@ -9,6 +9,7 @@ from hdrive_mbs.diagnosis.locate import LatentForce, Localiser
 from hdrive_mbs.diagnosis.locate.latent_force import TurnedForce
 from hdrive_mbs.diagnosis.result import NOWHERE, Place
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.errors import HdriveError
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -25,17 +26,23 @@ class Located:
     turned: tuple[TurnedForce, ...]
 
 
-def located(fine: Simulator, nominal: Fitted, null: Fitted) -> Located:
-    """Places of the gap of a model as given and refitted.  Raises HdriveError where the model cannot be linearised."""
-    localiser = Localiser(fine, localised_about(fine, nominal, null))
-    places = localiser.places()
-    found = bool(places) and places[0].at != NOWHERE
-    return Located(
-        places=places,
-        doubt=localiser.doubt,
-        forces=localiser.force(places[0].at) if found else (),
-        turned=localiser.turned(places[0].at) if found else (),
-    )
+def located(fine: Simulator, about: Fitted) -> Located:
+    """Places of the gap, looked for from a fitted model, see ``localised_about``.
+
+    Without places, and with the reason as doubt, where they cannot be looked for.
+    """
+    try:
+        localiser = Localiser(fine, about)
+        places = localiser.places()
+        found = bool(places) and places[0].at != NOWHERE
+        return Located(
+            places=places,
+            doubt=localiser.doubt,
+            forces=localiser.force(places[0].at) if found else (),
+            turned=localiser.turned(places[0].at) if found else (),
+        )
+    except HdriveError as error:
+        return Located(places=(), doubt=f"not looked for: {error}", forces=(), turned=())
 
 
 def localised_about(fine: Simulator, nominal: Fitted, null: Fitted) -> Fitted:

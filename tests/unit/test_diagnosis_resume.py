@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +20,10 @@ import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.digest import digest
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.journal import Journal
+from hdrive_mbs.diagnosis.locate.latent_force import LatentForce, TurnedForce
+from hdrive_mbs.diagnosis.located import Located
 from hdrive_mbs.diagnosis.packing import packed, unpacked
-from hdrive_mbs.diagnosis.result import Diagnosis
+from hdrive_mbs.diagnosis.result import Diagnosis, Place
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
@@ -181,6 +184,27 @@ def test_an_answer_comes_back_from_its_file_to_the_last_bit(tmp_path: Path) -> N
     journal.write("nothing", None)
     assert journal.read("nothing", hypothesis) == (None,)
     assert journal.read("never asked", hypothesis) is None
+
+
+def test_where_a_gap_lies_comes_back_from_its_file_with_classes_that_a_call_names(tmp_path: Path) -> None:
+    line = np.linspace(0.0, 1.0, 3)
+    force = LatentForce(
+        at="load", way="turn", record="a", unit="N m", times=line, force=line, angle=line, speed=line, torque=np.full(3, np.nan)
+    )
+    places = (Place(at="load", probability=0.9, gain=40.0, share=0.7, tied=("gear",)),)
+    place = Located(places=places, doubt="", forces=(force,), turned=(TurnedForce(line, line + 1j * line),))
+    hypothesis = Hypothesis((), (Added(ViscousDrag(coefficient=0.3), "load", "viscous_drag"),))
+    journal = Journal(tmp_path, {})
+    journal.write("key", (hypothesis, place))
+    answer = journal.read("key", partial(print, hypothesis, known=None))
+    assert answer is not None
+    (kept, found) = answer[0]
+    assert kept.added[0].effect == hypothesis.added[0].effect
+    assert (found.places, found.doubt) == (place.places, "")
+    assert found.forces[0].at == "load"
+    for name in ("times", "force", "angle", "speed", "torque"):
+        assert np.array_equal(getattr(found.forces[0], name), getattr(force, name), equal_nan=True)
+    assert np.array_equal(found.turned[0].force, place.turned[0].force)
 
 
 def test_a_file_of_answers_brings_no_class_of_its_own(tmp_path: Path) -> None:

@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
+from hdrive_mbs.diagnosis import all_samples
+from hdrive_mbs.diagnosis.all_samples import on_all_samples
+from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.choosing import beyond, enough, spread_out
 from hdrive_mbs.diagnosis.diagnose import factors_of
@@ -18,6 +21,7 @@ from hdrive_mbs.diagnosis.gather import wants_second
 from hdrive_mbs.diagnosis.ground import held, screen_from
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
+from hdrive_mbs.diagnosis.located import Located, located
 from hdrive_mbs.diagnosis.pairs import alone
 from hdrive_mbs.diagnosis.screening import Look
 from hdrive_mbs.diagnosis.search import ENOUGH
@@ -31,6 +35,7 @@ from models import rotor_bench
 from tests.unit.diagnosis_cases import bench, quiet, records
 
 BENCH = bench()
+NOT_LOOKED = Located(places=(), doubt="", forces=(), turned=())
 
 
 @pytest.fixture(scope="module")
@@ -410,3 +415,44 @@ def test_a_second_cause_is_asked_for_where_the_first_explains_something_and_leav
         odds,
     )
     assert wants_second(null, found, samples=100_000) is wants
+
+
+@pytest.fixture
+def near(simulator: Simulator) -> Fitted:
+    hypothesis = Hypothesis(factors_of(BENCH))
+    return dataclasses.replace(fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=0), cost=100.0, chi_fit=1.2)
+
+
+def test_what_little_tells_apart_is_fitted_alike_on_all_samples(
+    simulator: Simulator, near: Fitted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Twenty of log-likelihood may be what a few steps more bring."""
+    asked: list[Task] = []
+
+    def run(fine: Simulator, task: Task) -> Fitted:
+        asked.append(task)
+        return dataclasses.replace(near, hypothesis=task.hypothesis)
+
+    monkeypatch.setattr(all_samples, "run_task", run)
+    found = [near, dataclasses.replace(near, cost=110.0), dataclasses.replace(near, cost=140.0)]
+    far = dataclasses.replace(near, cost=1e5, chi_fit=90.0)
+    with Team(1) as team:
+        last = on_all_samples(team, simulator, far, found, NOT_LOOKED, lambda done, total: None)
+    given, _, best, rival, other = asked
+    assert given.steps == 0
+    assert (best.steps, best.hops) == (rival.steps, rival.hops)
+    assert other.steps < rival.steps
+    assert other.hops == 0
+    assert last.place is NOT_LOOKED
+
+
+def test_a_gap_whose_place_cannot_be_looked_for_says_why(simulator: Simulator, near: Fitted, monkeypatch: pytest.MonkeyPatch) -> None:
+    def raises(fine: Simulator, about: Fitted) -> None:
+        raise AnalysisError("The model has no steady state.")
+
+    monkeypatch.setattr("hdrive_mbs.diagnosis.located.Localiser", raises)
+    found = located(simulator, near)
+    assert found.places == found.forces == found.turned == ()
+    assert found.doubt == "not looked for: The model has no steady state."
+    with Team(1) as team:
+        assert at_the_place(team, simulator, near, found, [], lambda stage, done, total: None) == ()

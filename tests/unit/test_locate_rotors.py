@@ -274,7 +274,7 @@ def test_a_flaw_of_an_inner_race_is_named_with_its_order_from_the_force_at_its_b
     flaw = hm.InnerRacePulses(amplitude=20.0, mean=20.0, order=order, sharpness=0.5, direction=0.7, load_zone=0.8)
     simulator = localiser(*race_flaw(flaw), bare=dataclasses.replace(trial(), held_out=TIMES > 1.3))._simulator
     null = fit(simulator, NOMINAL, ORIGIN, steps=0)
-    gap = located(simulator, null, null)
+    gap = located(simulator, null)
     assert gap.places[0].at == "bearing_2.law"
     assert {force.way for force in gap.forces} == {"x", "y"}
     first = ForceOrders(gap.turned, Periods(simulator, null)).standing_out("turn", 2.0, 7.0)[:3]

@@ -1,0 +1,89 @@
+"""The last fits of a case, on all samples, and where its gap lies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from hdrive_mbs.diagnosis.choosing import beyond
+from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.located import Located, bends, localised_about, located
+from hdrive_mbs.diagnosis.search import HOPS
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.tasks import FINE, NEAR, Task, run_task
+from hdrive_mbs.diagnosis.team import Team
+from hdrive_mbs.errors import AnalysisError
+
+Work = Callable[[Simulator], Any]
+
+LAST, LONG = 4, 20
+"""Steps that these fits may take, and those of the best."""
+EXACT = 1e-6
+"""Relative change of the cost that ends them where little is left."""
+RIVAL = 25.0
+"""Log-likelihood behind the best within which another label is fitted as far as it: what so little tells apart has to be fitted alike."""
+
+
+@dataclass(frozen=True, eq=False)
+class Last:
+    """nominal, refitted : the model as given and refitted;  others : in the order asked for, None where it cannot be run"""
+
+    nominal: Fitted
+    refitted: Fitted
+    others: tuple[Fitted | None, ...]
+    place: Located
+
+
+def as_given(fine: Simulator, null: Fitted) -> Fitted | None:
+    """The nominal model as its data sheet says; None where it cannot be run."""
+    return run_task(fine, Task(null.hypothesis, np.zeros_like(null.z), None, 0, 1.0))
+
+
+def on_all_samples(
+    team: Team, fine: Simulator, null: Fitted, found: Sequence[Fitted], place: Located | None, said: Callable[[int, int], None]
+) -> Last:
+    """Fit on from where a search on fewer samples came to, side by side.
+
+    null : the nominal model, refitted;  found : with one cause or several;  place : where the gap lies, if that is known already
+
+    Raises AnalysisError where the nominal model cannot be simulated.
+    """
+    tasks = [_of_nominal(null), *_of_found(found, null.chi_fit < NEAR)]
+    work: list[Work] = [partial(_given, null=null, known=place), *(partial(run_task, task=task) for task in tasks)]
+    (nominal, place), refitted, *others = team.map(_done, fine, work, said)
+    if nominal is None or refitted is None:
+        raise AnalysisError("The nominal scene cannot be simulated through all of the records; look at its start values and inputs.")
+    return Last(nominal, refitted, tuple(others), place or located(fine, localised_about(fine, nominal, refitted)))
+
+
+def _done(fine: Simulator, work: Work) -> Any:
+    return work(fine)
+
+
+def _given(fine: Simulator, null: Fitted, known: Located | None) -> tuple[Fitted | None, Located | None]:
+    """The model as given, and where the gap lies if that is looked for from there."""
+    nominal = as_given(fine, null)
+    if nominal is None or known is not None or not bends(fine):
+        return nominal, known
+    return nominal, located(fine, nominal)
+
+
+def _of_nominal(null: Fitted) -> Task:
+    near = null.chi_fit < NEAR
+    return Task(null.hypothesis, null.z, None, LONG, EXACT if near else FINE, hops=HOPS if near else 0)
+
+
+def _of_found(found: Sequence[Fitted], near: bool) -> list[Task]:
+    """near : whether the nominal model leaves so little that everything is worth a long fit"""
+    leader = min(found, key=lambda item: item.cost, default=None)
+    tasks = []
+    for item in found:
+        rivals = leader is not None and item.cost < leader.cost + RIVAL
+        steps = LONG if rivals or near else 1 if leader is not None and beyond(item, leader) else LAST
+        sharp = EXACT if item.chi_fit < NEAR else FINE
+        tasks.append(Task(item.hypothesis, item.z, None, steps, sharp, hops=HOPS if rivals else 0))
+    return tasks
