@@ -33,8 +33,6 @@ SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 """Of the search for a second cause."""
 SINGLES = 3
 """Labels that are fitted on all samples."""
-SECOND_LOOKS = 60
-"""Of the labels that looked best alone, at which a second cause is looked for."""
 JOINED = 3
 """Other single causes that the best one is joined with, besides the best at the place of the gap."""
 
@@ -105,8 +103,7 @@ def _second(
     together = joined(team, coarse, first, tuple(rivals.values()))
     pair = None
     if not any(left(item.fitted) < enough(null, LEFT) for item in together):
-        among, again = single.likely[:SECOND_LOOKS], partial(_said, said, "second cause")
-        pair = search(team, coarse, first.fitted, groups, tried, among=among, depth=SHALLOW, report=again)
+        pair = search(team, coarse, first.fitted, groups, tried, depth=SHALLOW, report=partial(_said, said, "second cause"))
         together = [*pair.found, *together]
     if not together:
         return pair, ()

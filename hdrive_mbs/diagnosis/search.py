@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -66,13 +66,12 @@ class Search:
     """What a search found.
 
     base : the model without the suspects, refitted;  found : fitted laws, best first, several of one label
-    looks : cost of the first look at each law;  likely : labels, the one that looked best first
+    looks : cost of the first look at each law
     """
 
     base: Fitted
     found: tuple[Found, ...]
     looks: Mapping[str, float] = field(default_factory=dict)
-    likely: tuple[Label, ...] = ()
 
     @property
     def labels(self) -> tuple[Found, ...]:
@@ -100,7 +99,6 @@ def search(
     groups: Mapping[str, Sequence[str]],
     tried: Sequence[Candidate],
     *,
-    among: Collection[Label] | None = None,
     depth: Depth | None = None,
     begin: Begin = Periods,
     report: Report | None = None,
@@ -114,11 +112,10 @@ def search(
     found; in a shallow search only where it leaves much.
 
     begin : of the simulator and a fitted model, what says where laws with a period begin
-    among : labels that are looked at besides laws with a period, which show less beside something stronger; all if not given
     """
     how = depth or Depth()
     work = _Work(team, simulator, report or (lambda stage, done, total: None), how, begin)
-    everything = [item for item in suspects(base.hypothesis, groups, tried) if among is None or item.label in among or item.is_periodic]
+    everything = suspects(base.hypothesis, groups, tried)
     found, first = work.from_ground(base, base, everything)
     looks = {f"{suspect.law} at {suspect.label[1]}": cost for suspect, cost in first}
     if how.laws > 1 and how.again and base.chi_fit > FAR and not any(item.fitted.chi_fit < enough(base, ENOUGH) for item in found):
@@ -133,8 +130,7 @@ def search(
     if how.laws > 1 and base.chi_fit < NEAR:
         found = cheapest([*found, *work.fitted(bent(base, everything), "fitting parameters that the nominal model has bent")])
     final = sorted((scored(item, base) for item in found), key=lambda item: -item.log_odds)
-    likely_first = tuple(dict.fromkeys(suspect.label for suspect, _ in first))
-    return Search(base=base, found=tuple(final), looks=looks, likely=likely_first)
+    return Search(base=base, found=tuple(final), looks=looks)
 
 
 @dataclass(frozen=True, eq=False)
