@@ -59,6 +59,8 @@ class Bench:
     knowledge : parameters that are not exact, by a name of your own
     measured : columns to compare;  inputs : columns that drive the scene
     angles, speeds : of bodies at the start of every record; 0 if not given
+    settled : whether a rotor line starts every record where its weight and other steady forces let it rest, as a machine does;
+        False for records of a model that starts undeflected
     together : parameters that are suspected together, by a name for the group; every other one is suspected alone
     searched : names of records on which causes are searched, all if not given; the best are fitted to all records in the end.
         Leave out a long record that shows little that the others do not
@@ -74,6 +76,7 @@ class Bench:
     speeds: Mapping[str, float] = field(default_factory=dict)
     together: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     searched: tuple[str, ...] = ()
+    settled: bool = True
 
     def __post_init__(self) -> None:
         known = self.scene.parameters()
@@ -94,6 +97,10 @@ class Bench:
         """Groups of parameters that may be off together, by name."""
         grouped = {name for names in self.together.values() for name in names}
         return {**self.together, **{name: (name,) for name in self.knowledge if name not in grouped}}
+
+    @property
+    def _settled(self) -> bool:
+        return self.settled and self.scene.network().is_lateral
 
     def nominal(self, name: str) -> tuple[float, ...]:
         """Nominal values of a parameter at each of its paths."""
@@ -118,6 +125,7 @@ class Bench:
                 held_out=held_out(len(times), record.name),
                 angles=self.angles,
                 speeds=self.speeds,
+                settled=self._settled,
             ),
         )
 
@@ -142,6 +150,7 @@ class Bench:
                 held_out=np.zeros(plan.samples, bool),
                 angles=self.angles,
                 speeds=self.speeds,
+                settled=self._settled,
             ),
         )
 

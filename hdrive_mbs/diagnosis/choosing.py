@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.screening import Look
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect
-from hdrive_mbs.diagnosis.tasks import is_hopeless
+from hdrive_mbs.diagnosis.tasks import Found, is_hopeless
 
 PLACES = 2
 """Of one family that are looked at closer; what comes out best is tried at the others in the end."""
+FAMILIES = 3
+"""Whose other places are tried where nothing fits."""
 SHARE = 0.08
 """Of the best one's gain: what gains less is followed up only to fill the least number."""
 SMALL = 0.03
@@ -38,6 +40,15 @@ def spread_out(looks: Sequence[tuple[Suspect, Look]]) -> list[tuple[Suspect, Loo
         if seen[family] <= PLACES:
             chosen.append((suspect, look))
     return chosen
+
+
+def passed_over(found: Sequence[Found], looks: Sequence[tuple[Suspect, Look]], labels: Collection[Label]) -> list[tuple[Suspect, Look]]:
+    """Looks at the other places of the families that turned out best: beside a strong gap a look at the right place may show nothing.
+
+    found : fitted laws, best first;  labels : those that were chosen for a fit
+    """
+    families = list(dict.fromkeys(item.suspect.label[0] for item in found if item.suspect.law != PARAMETER))[:FAMILIES]
+    return [(suspect, look) for suspect, look in looks if suspect.label[0] in families and suspect.label not in labels]
 
 
 def picked(looks: Sequence[tuple[Suspect, Look]], *, laws: int) -> list[tuple[Suspect, Look]]:

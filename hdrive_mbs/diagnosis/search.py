@@ -10,7 +10,7 @@ import numpy as np
 
 from hdrive_mbs.diagnosis.beginnings import begun_at, beside, widths_of
 from hdrive_mbs.diagnosis.candidates import Candidate
-from hdrive_mbs.diagnosis.choosing import beyond, enough, picked, spread_out, worth
+from hdrive_mbs.diagnosis.choosing import beyond, enough, passed_over, picked, spread_out, worth
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.force_orders import StandsOut
 from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, restarts, unfinished
@@ -106,7 +106,8 @@ def search(
     """Look at everything that may be missing from a fitted model, and fit the best together with its parameters.
 
     One simple law stands for each label in the first look.  The best labels are looked at with all laws and starts,
-    the best of those get a few joint steps with their own Jacobians, and the best of these are fitted to the end.
+    the best of those get a few joint steps with their own Jacobians, and the best of these are fitted to the end.  Where they
+    leave something, the places of their families that were passed over are fitted too.
     Where all of them leave something, the same is done with the likeliest, the parameters held near the values of the data sheet.
     What came out best is then tried with the other laws of its family and at all other places where it may sit, from the values
     found; in a shallow search only where it leaves much.
@@ -167,8 +168,17 @@ class _Work:
             for k, item in enumerate(kept)
         ]
         further_ = [further(item.fitted, *((CONVERGED, FINE, 1) if end else (STEPS,))) for item, end in zip(kept, thorough, strict=True)]
-        found = self.fitted([(item.suspect, task) for item, task in zip(kept, further_, strict=True)], "fitting the best")
-        return cheapest(found), [(suspect, look.cost) for suspect, look in first]
+        found = cheapest(self.fitted([(item.suspect, task) for item, task in zip(kept, further_, strict=True)], "fitting the best"))
+        if found and found[0].fitted.chi_fit > enough(base, ENOUGH):
+            found = cheapest([*found, *self._others(passed_over(found, first, chosen))])
+        return found, [(suspect, look.cost) for suspect, look in first]
+
+    def _others(self, looks: Sequence[tuple[Suspect, Look]]) -> list[Found]:
+        """A few joint steps from looks, and the best of them fitted to the end."""
+        tasks = [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE)) for suspect, look in looks]
+        brief = cheapest(self.fitted(tasks, "other places of the best"))
+        best = [(item.suspect, further(item.fitted)) for item in brief[: self.how.serious]]
+        return [*brief[len(best) :], *self.fitted(best, "fitting the best")]
 
     def _begun(self, everything: Sequence[Suspect], model: Fitted) -> list[Suspect]:
         """Laws with a period begin at those that stand out in what the model leaves."""
