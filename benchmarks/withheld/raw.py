@@ -111,8 +111,8 @@ def _label(pair: Sequence[str]) -> Label:
 
 def judged(raw: Mapping[str, Any]) -> Claim:
     """The verdict that the present rules and constants give on stored figures."""
-    pair = _stored(raw["pairs"][0]) if raw["pairs"] else None
-    return judge(math.sqrt(raw["null"]["fit"] * raw["null"]["held"]), [_stored(item) for item in raw["singles"]], pair)
+    pairs = [_stored(item) for item in raw["pairs"]]
+    return judge(math.sqrt(raw["null"]["fit"] * raw["null"]["held"]), [_stored(item) for item in raw["singles"]], pairs)
 
 
 def finding_again(raw: Mapping[str, Any]) -> Finding:

@@ -128,8 +128,7 @@ def factors_of(bench: Bench) -> tuple[Factor, ...]:
 
 def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, started: float, pictures: bool) -> Diagnosis:
     """The answer that the fits of a case give."""
-    pair = evidence.pairs[0] if evidence.pairs else None
-    claim = judge(left(evidence.null), evidence.singles, pair)
+    claim = judge(left(evidence.null), evidence.singles, evidence.pairs)
     best = evidence.null if claim.fit is None or claim.kind == "unknown" else claim.fit.fitted
     improved = best.hypothesis.scene(bench.scene, best.z)
     notes: list[str] = []
@@ -165,9 +164,7 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
 
 def _next_records(bench: Bench, records: Sequence[Record], evidence: Evidence, claim: Claim, notes: list[str]) -> tuple[Separation, ...]:
     """Records that would separate what these cannot tell apart; a note where none can be planned."""
-    assert claim.fit is not None
-    labels = {claim.fit.suspect.label, *claim.tied}
-    tied = {item.suspect.label: item.fitted for item in evidence.singles if item.suspect.label in labels}
+    tied = _alternatives(evidence, claim)
     if len(tied) < 2:
         return ()
     try:
@@ -175,6 +172,19 @@ def _next_records(bench: Bench, records: Sequence[Record], evidence: Evidence, c
     except HdriveError as error:
         notes.append(f"No next record was planned: {error}")
         return ()
+
+
+def _alternatives(evidence: Evidence, claim: Claim) -> dict[Label, Fitted]:
+    """What is claimed and what cannot be told from it, each by the label that the others lack."""
+    assert claim.fit is not None
+    own = claim.fit.suspect.label
+    if claim.fit not in evidence.pairs:
+        return {item.suspect.label: item.fitted for item in evidence.singles if item.suspect.label in (own, *claim.tied)}
+    found = {own: claim.fit.fitted}
+    for item in evidence.pairs:
+        labels = [added.label for added in item.fitted.hypothesis.added if added.label in claim.tied]
+        found |= dict.fromkeys(labels[:1], item.fitted)
+    return found
 
 
 def _causes(found: Found, claim: Claim, improved: Scene, groups: Mapping[str, Sequence[str]]) -> tuple[Cause, ...]:

@@ -14,7 +14,7 @@ from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import enough
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.located import Located, bends, localised_about, located
-from hdrive_mbs.diagnosis.pairs import alone, joined, swapped
+from hdrive_mbs.diagnosis.pairs import alone, contenders, joined, swapped
 from hdrive_mbs.diagnosis.search import Depth, Report, Search, fit_nominal, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import suspects
@@ -95,7 +95,7 @@ def _second(
     there: Sequence[Found],
     said: Report,
 ) -> tuple[Search | None, tuple[Found, ...]]:
-    """The best pair of causes, where one leaves something: known ones together, and else a search for a second one."""
+    """The pairs of causes that may be the best, where one leaves something: known ones together, and else a search for a second one."""
     first = single.found[0] if single.found else None
     if first is None or not wants_second(null, first, int(np.count_nonzero(coarse.fit))):
         return None, ()
@@ -109,7 +109,7 @@ def _second(
         return pair, ()
     best = min(together, key=lambda item: item.fitted.cost)
     other = swapped(team, coarse, best, first.suspect.label, single.labels[:SINGLES])
-    return pair, (min((best, *other), key=lambda item: item.fitted.cost),)
+    return pair, contenders(team, coarse, (*together, *other), first)
 
 
 def _said(said: Report, about: str, stage: str, done: int, total: int) -> None:
@@ -147,5 +147,5 @@ def gather(
         for item, fitted in zip((*serious, *double), last.others, strict=True)
     ]
     singles = sorted(filter(None, final[: len(serious)]), key=lambda item: -item.log_odds)
-    pairs = tuple(filter(None, final[len(serious) :]))
+    pairs = tuple(sorted(filter(None, final[len(serious) :]), key=lambda item: -item.log_odds))
     return Evidence(fine, last.nominal, last.refitted, single, pair, tuple(singles), pairs, last.place)

@@ -7,11 +7,13 @@ from collections.abc import Sequence
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import Label, Suspect, renamed
-from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, Found, Task, run_task, those_that_ran
+from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, Found, Task, further, run_task, those_that_ran
 from hdrive_mbs.diagnosis.team import Team
 
 TOGETHER = 5
 """Joint steps of two causes that are put together."""
+CONTENDERS, NEARLY = 3, 0.01
+"""Pairs that are fitted to the end at most, and share of what a second cause gains by which they may lie behind the best until then."""
 
 
 def joined(team: Team, simulator: Simulator, first: Found, others: Sequence[Found]) -> list[Found]:
@@ -71,3 +73,29 @@ def alone(team: Team, simulator: Simulator, pair: Found, everything: Sequence[Su
             tasks.append(Task(hypothesis, hypothesis.start(fitted.hypothesis.nominal_part(fitted.z)), None, CONVERGED, FINE))
             whose.append(suspect)
     return those_that_ran(whose, team.map(run_task, simulator, tasks))
+
+
+def contenders(team: Team, simulator: Simulator, pairs: Sequence[Found], first: Found) -> tuple[Found, ...]:
+    """The pairs that may be the best, fitted to the end, best first: one for each two causes.
+
+    Friction of either end of a stiff shaft, say, differs by less than what a few steps bring.
+
+    first : the best single cause
+    """
+    best: dict[frozenset[object], Found] = {}
+    for item in sorted(pairs, key=lambda item: item.fitted.cost):
+        best.setdefault(_causes(item), item)
+    if not best:
+        return ()
+    ranked = list(best.values())
+    least = ranked[0].fitted.cost
+    near = [item for item in ranked if item.fitted.cost - least <= NEARLY * max(first.fitted.cost - least, 0.0)][:CONTENDERS]
+    if len(near) < 2:
+        return (ranked[0],)
+    fits = team.map(run_task, simulator, [further(item.fitted) for item in near])
+    return tuple(sorted(those_that_ran([item.suspect for item in near], fits), key=lambda item: item.fitted.cost)) or (ranked[0],)
+
+
+def _causes(pair: Found) -> frozenset[object]:
+    hypothesis = pair.fitted.hypothesis
+    return frozenset((*(item.label for item in hypothesis.added), *hypothesis.loose))

@@ -73,11 +73,11 @@ NONE: Label = ("none", "")
 UNKNOWN: Label = ("unknown", "")
 
 
-def judge(null_misfit: float, found: Sequence[Found], pair: Found | None) -> Claim:
+def judge(null_misfit: float, found: Sequence[Found], pairs: Sequence[Found] = ()) -> Claim:
     """The verdict.
 
     null_misfit : what the refitted nominal model leaves, see ``left``
-    found : single causes on all samples, best first;  pair : the best pair, its log odds those over the nominal model
+    found : single causes on all samples, best first;  pairs : of causes, best first, their log odds those over the nominal model
     """
     found = _plain_first(found)
     singles = [item for item in found if _excess(item, null_misfit) > 0.0]
@@ -86,15 +86,24 @@ def judge(null_misfit: float, found: Sequence[Found], pair: Found | None) -> Cla
         kind = "none" if null_misfit <= CLEAN else "unknown"
         return Claim(kind, None, (), _probabilities(found, None, null_misfit, False))
     chosen = best
-    if pair is not None and _needed(best, pair):
-        chosen = pair
+    if pairs and _needed(best, pairs[0]):
+        chosen = pairs[0]
     stands = _stands(chosen, null_misfit) or 1.0 - left(best.fitted) / null_misfit >= LARGE
     probabilities = _probabilities(found, chosen, null_misfit, stands)
     if not stands:
         return Claim("unknown", chosen, (), probabilities)
-    close = [item.suspect.label for item in singles if chosen is best and item is not best and best.log_odds - item.log_odds < TIED]
-    tied = tuple(dict.fromkeys(label for label in close if label != best.suspect.label))
-    return Claim(kind_of(chosen), chosen, tied, probabilities)
+    alike = [(item, [item.suspect.label]) for item in singles] if chosen is best else [(item, _parts(item, found)) for item in pairs]
+    return Claim(kind_of(chosen), chosen, _tied(chosen, alike), probabilities)
+
+
+def _tied(chosen: Found, alike: Sequence[tuple[Found, list[Label]]]) -> tuple[Label, ...]:
+    """Labels that the records cannot tell from what is claimed; of pairs what they do not share with it.
+
+    alike : fits with as many causes, the chosen one among them, and the labels of these
+    """
+    own = [label for item, labels in alike if item is chosen for label in labels]
+    close = [labels for item, labels in alike if chosen.log_odds - item.log_odds < TIED]
+    return tuple(dict.fromkeys(label for labels in close for label in labels if label not in own))
 
 
 def _plain_first(found: Sequence[Found]) -> list[Found]:
