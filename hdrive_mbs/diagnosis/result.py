@@ -122,6 +122,7 @@ class DomainBin:
     """Part of the operating range with the misfit of the refitted nominal model there.
 
     over : "speed", "torque", "direction", "order", "frequency" or "time";  low, high : its ends, in unit
+    of : place whose speed, torque, direction or order it is; empty for frequency and time
     excess : mean square minus 1;  samples : number;  after : excess with the claimed cause
     """
 
@@ -132,6 +133,7 @@ class DomainBin:
     excess: float
     after: float
     samples: int
+    of: str = ""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -131,7 +131,7 @@ def moved_parameters(diagnosis: Diagnosis) -> list[tuple[Estimate, float]]:
 
 def domain_sentences(bins: Sequence[DomainBin]) -> tuple[str, ...]:
     """Where in the operating range the misfit of the refitted nominal model lies, one sentence for each quantity."""
-    return tuple(_domain(over, [item for item in bins if item.over == over]) for over in dict.fromkeys(item.over for item in bins))
+    return tuple(_domain([item for item in bins if item.over == over]) for over in dict.fromkeys(item.over for item in bins))
 
 
 def bin_name(item: DomainBin) -> str:
@@ -148,7 +148,15 @@ def bin_name(item: DomainBin) -> str:
     return f"{item.low:.3g} to {item.high:.3g}{unit}"
 
 
-def _domain(over: str, bins: Sequence[DomainBin]) -> str:
+def over_name(item: DomainBin) -> str:
+    """Of what a bin is a range, with the place: ``motor speed``, ``direction of motor``, ``time``."""
+    if not item.of:
+        return item.over
+    return f"{named(item.of)} {item.over}" if item.over in ("speed", "torque") else f"{item.over} of {named(item.of)}"
+
+
+def _domain(bins: Sequence[DomainBin]) -> str:
+    over = over_name(bins[0])
     energies = [max(item.excess, 0.0) * item.samples if math.isfinite(item.excess) else 0.0 for item in bins]
     total, samples = sum(energies), sum(item.samples for item in bins)
     if not total > 0.0 or not samples:
