@@ -212,8 +212,8 @@ def _orders(shaft: str, stretches: Sequence[_Stretch]) -> Iterator[DomainBin]:
     for order in range(ORDERS + 1):
         near = np.arange(max(1, STEP * order - STEP // 2), STEP * order + STEP // 2)
         if count[near].sum() > 0.0:
-            sums = (float(total[near].sum()) for total in (before, after, count))
-            yield _bin("order", shaft, "1", max(order - 0.5, 0.0), order + 0.5, *sums)
+            energies = (float(total[near].sum()) for total in (before, after, count))
+            yield _bin("order", shaft, "1", max(order - 0.5, 0.0), order + 0.5, *energies)
 
 
 def concentrated(bins: Sequence[DomainBin]) -> tuple[str, ...]:
