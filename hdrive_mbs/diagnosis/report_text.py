@@ -31,12 +31,11 @@ def _lines(diagnosis: Diagnosis) -> Iterator[str]:
     yield from _heading(sentences.title(diagnosis), "=")
     yield ""
     yield from _wrapped(f"{sentences.verdict(diagnosis)} {sentences.confidence(diagnosis)}", indent="")
-    for text in filter(None, (sentences.ambiguity(diagnosis), sentences.inexact(diagnosis))):
+    for text in filter(None, (sentences.ambiguity(diagnosis), sentences.inexact(diagnosis), sentences.rest(diagnosis))):
         yield from _wrapped(text, indent="")
     for cause in diagnosis.causes:
         yield from _cause(cause)
-    where = [sentences.where(place) for place in diagnosis.where[:5]]
-    yield from _section("Where (an unknown signal at one place, no law assumed)", where)
+    yield from _section("Where (an unknown signal at one place, no law assumed)", sentences.where_sentences(diagnosis, 5))
     yield from _gap(diagnosis)
     if diagnosis.ranking:
         table = report_rows.ranking_table(diagnosis)
@@ -44,7 +43,8 @@ def _lines(diagnosis: Diagnosis) -> Iterator[str]:
         yield from _drawn(table)
         yield "  log odds: against the refitted nominal model; fit, held out: mean square of the residual, 1 for noise alone"
     yield from _parameters(diagnosis)
-    yield from _section("Where in the operating range (refitted nominal model)", sentences.domain_sentences(diagnosis.domain))
+    if not sentences.only_noise(diagnosis):
+        yield from _section("Where in the operating range (refitted nominal model)", sentences.domain_sentences(diagnosis.domain))
     yield from _section("Measure next", sentences.next_sentences(diagnosis.next_records))
     yield from _section("Notes", diagnosis.notes)
     yield ""

@@ -14,6 +14,16 @@ EVEN = 1.5
 """A bin with less than this many times its share of the samples stands out from nothing."""
 REST = 1.26
 """Times the noise (root mean square) from which what a claim leaves is spoken of: a mean square of FITS in verdict.py."""
+ALL = 0.9
+"""Share of the gap from which a place is said to explain nearly all of it."""
+WHY = (
+    "A signal at a place may be as large and as quick as it takes, so several can explain nearly all of the gap:"
+    " the likelier is the one that needs less signal for it."
+)
+LEFT = (
+    "What is left is noise by the verdict: no place and no part of the operating range is named,"
+    " for those that fit noise best mean nothing (the JSON has them)."
+)
 MOVED = 1.0
 """Standard deviations of its tolerance from which a parameter is said to have moved."""
 
@@ -107,10 +117,32 @@ def where(place: Place) -> str:
     return text + (f"; these records cannot tell it from {listed(place.tied, 'or')}" if place.tied else "")
 
 
+def where_sentences(diagnosis: Diagnosis, top: int | None = None) -> tuple[str, ...]:
+    """Places of the gap, the first ones, and why one of several that explain the same wins; none where only noise is left."""
+    if only_noise(diagnosis) or not diagnosis.where:
+        return ()
+    shown = tuple(where(place) for place in diagnosis.where[:top])
+    full = [place for place in diagnosis.where[:top] if place.share >= ALL and not place.parameter]
+    return (*shown, WHY) if len(full) > 1 else shown
+
+
+def only_noise(diagnosis: Diagnosis) -> bool:
+    """Whether the verdict is that nothing is left to be put anywhere: then neither places nor operating range are told."""
+    return diagnosis.verdict == "none"
+
+
+def rest(diagnosis: Diagnosis) -> str:
+    """In place of them, if they were looked for: that what is left is noise."""
+    return LEFT if only_noise(diagnosis) and (diagnosis.where or diagnosis.domain) else ""
+
+
 def explaining(place: Place) -> str:
     """What a place would explain, and how."""
     if place.parameter:
-        return f"{named(place.parameter)} off beyond its tolerance explains the gap better than an unknown signal there"
+        return (
+            f"in place of an unknown signal there {named(place.parameter)} off beyond its tolerance would do, and with less;"
+            " this compares the two alone and is not the verdict"
+        )
     return f"an unknown signal there explains {percent(place.share)} of the gap"
 
 

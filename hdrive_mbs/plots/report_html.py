@@ -37,14 +37,15 @@ def write_report_html(diagnosis: Diagnosis, path: str | os.PathLike[str]) -> Pat
 
 def report_body(diagnosis: Diagnosis) -> Iterator[str]:
     """Everything below the title: verdict, causes, gap, curves, place, ranking, parameters; headings of the second level."""
-    said = (sentences.verdict, sentences.confidence, sentences.ambiguity, sentences.inexact)
+    said = (sentences.verdict, sentences.confidence, sentences.ambiguity, sentences.inexact, sentences.rest)
     kind = escape(diagnosis.verdict, quote=True)
     yield f'<div class="verdict {kind}">{"".join(paragraphs(text for say in said if (text := say(diagnosis))))}</div>'
     yield from _causes(diagnosis)
     yield from _gap(diagnosis)
     yield from _curves(diagnosis)
-    yield from _where(diagnosis)
-    yield from _domain(diagnosis)
+    if not sentences.only_noise(diagnosis):
+        yield from _where(diagnosis)
+        yield from _domain(diagnosis)
     yield from _ranking(diagnosis)
     yield from _parameters(diagnosis)
     yield from bullets("Measure next", sentences.next_sentences(diagnosis.next_records))
@@ -116,6 +117,7 @@ def _where(diagnosis: Diagnosis) -> Iterator[str]:
         first = diagnosis.where[0]
         text = f"Bars: {sentences.where(first)}."
         yield figure(plot_places(diagnosis), text, "An unknown signal at one place, no law assumed.")
+        yield from paragraphs(sentences.where_sentences(diagnosis, 5))
     for force in diagnosis.forces:
         axes = plot_force(diagnosis, at=force.at, way=force.way, record=force.record)
         text = f"Estimated unknown signal at {force.at} {force.way} during record {force.record}, over time and against what varies there."

@@ -36,9 +36,28 @@ def test_a_place_says_what_explains_the_gap_there() -> None:
     ]
     assert said == [
         "load: probability 0.50; an unknown signal there explains 48 % of the gap",
-        "gear: probability 0.50; gear stiffness off beyond its tolerance explains the gap better than an unknown signal there",
+        "gear: probability 0.50; in place of an unknown signal there gear stiffness off beyond its tolerance would do, and with less;"
+        " this compares the two alone and is not the verdict",
         "nowhere: probability 0.50; no signal at any place",
     ]
+
+
+def test_where_nothing_but_noise_is_left_no_place_and_no_range_is_named() -> None:
+    found = SAMPLES["effect"]()
+    quiet = dataclasses.replace(SAMPLES["none"](), where=found.where, domain=found.domain)
+    text = " ".join(report_text(quiet).split())
+    assert "What is left is noise by the verdict" in text
+    assert "Over speed" not in text
+    assert "unknown signal there" not in text
+    assert "What is left is noise" not in report_text(SAMPLES["none"]())  # neither was looked for
+    assert "Over speed" in report_text(found)
+
+
+def test_of_places_that_explain_the_same_the_report_says_why_one_wins() -> None:
+    places = (Place(at="arm", probability=0.999, gain=99.0, share=0.99995), Place(at="motor", probability=0.001, gain=30.0, share=0.99995))
+    found = dataclasses.replace(SAMPLES["effect"](), where=places)
+    assert sentences.where_sentences(found)[-1].endswith("the likelier is the one that needs less signal for it.")
+    assert len(sentences.where_sentences(dataclasses.replace(found, where=places[:1]))) == 1
 
 
 @pytest.mark.parametrize(
