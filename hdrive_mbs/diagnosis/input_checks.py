@@ -6,6 +6,7 @@ What is wrong with a record alone (gaps, saturated or stuck channels, contradict
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -31,6 +32,8 @@ MOVES = 10.0
 """Standard deviations of its noise by which a column has to vary somewhere, or nothing was excited."""
 START, SHARE = 20.0, 0.1
 """A record does not start like the scene where a speed differs by that many standard deviations and that share of its range."""
+ALIKE = 0.7
+"""Likeness of two names (difflib) from which one may have been meant by the other."""
 FIRST = 16
 """Samples that make up the start."""
 
@@ -132,17 +135,38 @@ def check_trials(simulator: Simulator, factors: Sequence[Factor]) -> None:
             _check_start(trial, column, own[column], units)
 
 
+def not_driven(bench: Bench, records: Sequence[Record], simulator: Simulator, factors: Sequence[Factor]) -> tuple[str, ...]:
+    """Says so, and what to do, where no column drives the scene and the model stands still while the records move."""
+    if bench.inputs or any(trial.motions for trial in simulator.trials):
+        return ()
+    hypothesis = Hypothesis(factors=tuple(factors))
+    simulated = simulator.columns(hypothesis, np.zeros(hypothesis.size))
+    for trial, own in zip(simulator.trials, simulated, strict=True):
+        if not own or any(_range(own[column]) > MOVES * trial.measured[column].total for column in trial.columns):
+            return ()
+    unused = sorted({name for record in records for name in record.channels if name not in bench.measured})
+    which = repr(unused[0] if unused else "motor_torque")
+    others = f" Columns that are not used: {', '.join(unused)}." if unused else ""
+    return (
+        "No column drives the scene, and the model stands still while the records move: whatever is said below is about that."
+        f" Write a bench() that says which column drives what, with Bench(..., inputs={{{which}: Input(path='motor.characteristic',"
+        f" law=lambda t, v: hm.TorqueHistory(times=t, torques=v))}}), see docs/diagnosis.md.{others}",
+    )
+
+
 def not_compared(bench: Bench, records: Sequence[Record]) -> tuple[str, ...]:
-    """Columns that the bench measures and a record has not, in words."""
+    """Columns that the bench measures and a record has not, in words, with what they may have been called."""
     found = []
+    known = {*bench.measured, *bench.inputs}
     for column in bench.measured:
         without = [record for record in records if column not in record.channels]
         if without:
             where = ", ".join(repr(record.name) for record in without)
-            known = {*bench.measured, *bench.inputs}
             others = sorted({name for record in without for name in record.channels if name not in known})
             unused = f" Columns there that the bench does not know: {', '.join(others)}." if others else ""
-            found.append(f"{column!r}, which the bench measures, was not compared in {where}: no such column there.{unused}")
+            near = difflib.get_close_matches(column, others, 1, ALIKE)
+            meant = f" Did you mean {near[0]!r}? Then name both alike." if near else ""
+            found.append(f"{column!r}, which the bench measures, was not compared in {where}: no such column there.{unused}{meant}")
     return tuple(found)
 
 

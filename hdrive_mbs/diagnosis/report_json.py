@@ -59,6 +59,7 @@ def report_document(diagnosis: Diagnosis, *, series: bool = False) -> dict[str, 
             }
             for item in diagnosis.next_records
         ],
+        "warnings": diagnosis.warnings,
         "notes": diagnosis.notes,
         "improved_scene": _scene(diagnosis.improved),
         "seconds": diagnosis.seconds,

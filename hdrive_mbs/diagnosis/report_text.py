@@ -30,6 +30,8 @@ def write_report(diagnosis: Diagnosis, path: str | os.PathLike[str]) -> Path:
 def _lines(diagnosis: Diagnosis) -> Iterator[str]:
     yield from _heading(sentences.title(diagnosis), "=")
     yield ""
+    for text in diagnosis.warnings:
+        yield from _wrapped(f"WARNING: {text}", indent="")
     yield from _wrapped(f"{sentences.verdict(diagnosis)} {sentences.confidence(diagnosis)}", indent="")
     for text in filter(None, (sentences.ambiguity(diagnosis), sentences.inexact(diagnosis), sentences.rest(diagnosis))):
         yield from _wrapped(text, indent="")

@@ -239,7 +239,8 @@ class Diagnosis:
     where : places by latent-force localisation;  gaps : all together first, then by record and column
     parameters : nominal parameters after the fit;  improved : the scene with the cause, ready to be saved and simulated
     next_records : for a group that cannot be told apart, records that would separate it, best first
-    notes : what a reader has to know (fits that did not converge, verification on the engine, ...)
+    warnings : what a reader has to know before he believes the verdict (a column that was not compared, a scene that nothing drives)
+    notes : what else he has to know (fits that did not converge, verification on the engine, ...)
     forces, loops, order_maps : for pictures: at the located place, most telling record first
     """
 
@@ -257,6 +258,7 @@ class Diagnosis:
     traces: tuple[Trace, ...] = ()
     next_records: tuple[Separation, ...] = ()
     notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     seconds: float = 0.0
     versions: Mapping[str, str] = field(default_factory=dict)
     forces: tuple[LatentForce, ...] = ()

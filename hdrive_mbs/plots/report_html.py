@@ -38,6 +38,8 @@ def write_report_html(diagnosis: Diagnosis, path: str | os.PathLike[str]) -> Pat
 def report_body(diagnosis: Diagnosis) -> Iterator[str]:
     """Everything below the title: verdict, causes, gap, curves, place, ranking, parameters; headings of the second level."""
     said = (sentences.verdict, sentences.confidence, sentences.ambiguity, sentences.inexact, sentences.rest)
+    if diagnosis.warnings:
+        yield f'<div class="verdict unknown">{"".join(paragraphs(f"Warning: {text}" for text in diagnosis.warnings))}</div>'
     kind = escape(diagnosis.verdict, quote=True)
     yield f'<div class="verdict {kind}">{"".join(paragraphs(text for say in said if (text := say(diagnosis))))}</div>'
     yield from _causes(diagnosis)

@@ -16,8 +16,9 @@ from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
 from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.diagnose import diagnose, factors_of
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
-from hdrive_mbs.diagnosis.input_checks import check_trials
+from hdrive_mbs.diagnosis.input_checks import check_trials, not_compared, not_driven
 from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.report_text import report_text
 from hdrive_mbs.diagnosis.result import Diagnosis
 from hdrive_mbs.diagnosis.scale_checks import check_scale
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -29,6 +30,7 @@ from hdrive_mbs.effects.torque_ripple import TorqueRipple
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.network import Network
+from hdrive_mbs.plots.report_html import report_html
 from hdrive_mbs.quantities import parameter
 from hdrive_mbs.records.record import Record
 from hdrive_mbs.records.repair import repaired
@@ -85,10 +87,32 @@ def test_what_is_no_record_is_refused_and_one_class_is_a_list_of_one() -> None:
     assert candidates(bench().scene, hm.ViscousDrag) != []
 
 
-def test_a_measured_column_that_no_record_has_is_named_in_the_notes() -> None:
+def test_a_measured_column_that_no_record_has_is_warned_of_at_the_top() -> None:
     given = tuple(record.without("load_angle") for record in quiet())
-    [note] = [note for note in run(given=given, kinds=(hm.ViscousDrag,)).notes if "load_angle" in note]
-    assert note == "'load_angle', which the bench measures, was not compared in 'staircase', 'load_cycle': no such column there."
+    found = run(given=given, kinds=(hm.ViscousDrag,))
+    [said] = found.warnings
+    assert said == "'load_angle', which the bench measures, was not compared in 'staircase', 'load_cycle': no such column there."
+    assert report_text(found).splitlines()[3].startswith("WARNING: 'load_angle', which the bench measures, was not compared")
+    assert report_html(found).index("Warning: &#x27;load_angle&#x27;") < report_html(found).index("No gap beyond noise")
+
+
+def test_a_column_that_is_spelt_otherwise_than_in_the_bench_is_asked_about() -> None:
+    first = quiet()[0]
+    given = first.with_channels(item.replacing(name="loadangle") if item.name == "load_angle" else item for item in first)
+    [said] = not_compared(bench(), (given,))
+    assert said.endswith("Columns there that the bench does not know: loadangle. Did you mean 'loadangle'? Then name both alike.")
+
+
+def test_a_scene_that_no_column_drives_is_warned_of() -> None:
+    """A scene alone takes columns named like its channels; its motor stands still, and the torque column is not used."""
+    first = quiet()[0].selecting("motor_torque", "load_angle")
+    record = first.with_channels(item.replacing(name="load.angle") if item.name == "load_angle" else item for item in first)
+    found = diagnose(bench().scene, record, candidates=(hm.ViscousDrag,), pictures=False, step=1e-3)
+    [said] = found.warnings
+    assert said.startswith("No column drives the scene, and the model stands still while the records move")
+    assert "inputs={'motor_torque': Input(path=" in said
+    simulator = Simulator(bench().trials(quiet()[0]), 1e-3)
+    assert not_driven(bench(), quiet(), simulator, factors_of(bench())) == ()
 
 
 def test_effects_with_states_of_their_own_can_be_run_on_a_record_of_a_kilohertz() -> None:
