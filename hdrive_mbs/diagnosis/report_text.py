@@ -15,6 +15,8 @@ from hdrive_mbs.writing import write_text
 
 WIDTH = 110
 """Columns of the report; only a table with long names is wider."""
+ROWS = 15
+"""Nominal parameters up to which all are listed."""
 
 
 def report_text(diagnosis: Diagnosis) -> str:
@@ -33,7 +35,9 @@ def _lines(diagnosis: Diagnosis) -> Iterator[str]:
     for text in diagnosis.warnings:
         yield from _wrapped(f"WARNING: {text}", indent="")
     yield from _wrapped(f"{sentences.verdict(diagnosis)} {sentences.confidence(diagnosis)}", indent="")
-    for text in filter(None, (sentences.ambiguity(diagnosis), sentences.inexact(diagnosis), sentences.rest(diagnosis))):
+    for text in filter(
+        None, (sentences.ambiguity(diagnosis), sentences.inexact(diagnosis), sentences.strained(diagnosis), sentences.rest(diagnosis))
+    ):
         yield from _wrapped(text, indent="")
     for cause in diagnosis.causes:
         yield from _cause(cause)
@@ -78,11 +82,14 @@ def _parameters(diagnosis: Diagnosis) -> Iterator[str]:
     if not diagnosis.parameters:
         return
     yield from _section("Nominal parameters", [""])
-    table = report_rows.moved_table(diagnosis)
+    short = len(diagnosis.parameters) > ROWS
+    table = report_rows.parameter_table(diagnosis, beyond=sentences.MOVED if short else 0.0)
     if table.rows:
         yield from _drawn(table)
-    if text := sentences.unmoved(diagnosis):
-        yield from _wrapped(text)
+    if short:
+        number = len(diagnosis.parameters) - len(table.rows)
+        yield f"  {number} more moved by less than {sentences.MOVED:g} sigma; diagnosis.json has them all under 'parameters'"
+    yield from _wrapped(sentences.SIGMA)
 
 
 def _section(title: str, lines: Sequence[str]) -> Iterator[str]:

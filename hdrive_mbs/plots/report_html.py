@@ -37,7 +37,7 @@ def write_report_html(diagnosis: Diagnosis, path: str | os.PathLike[str]) -> Pat
 
 def report_body(diagnosis: Diagnosis) -> Iterator[str]:
     """Everything below the title: verdict, causes, gap, curves, place, ranking, parameters; headings of the second level."""
-    said = (sentences.verdict, sentences.confidence, sentences.ambiguity, sentences.inexact, sentences.rest)
+    said = (sentences.verdict, sentences.confidence, sentences.ambiguity, sentences.inexact, sentences.strained, sentences.rest)
     if diagnosis.warnings:
         yield f'<div class="verdict unknown">{"".join(paragraphs(f"Warning: {text}" for text in diagnosis.warnings))}</div>'
     kind = escape(diagnosis.verdict, quote=True)
@@ -160,5 +160,4 @@ def _parameters(diagnosis: Diagnosis) -> Iterator[str]:
     if not diagnosis.parameters:
         return
     yield "<h2>Nominal parameters</h2>"
-    yield from table_of(report_rows.moved_table(diagnosis), "Moved by the fit; sigma is the tolerance they had before")
-    yield from paragraphs(text for text in [sentences.unmoved(diagnosis)] if text)
+    yield from table_of(report_rows.parameter_table(diagnosis), f"Before and after the fit; {sentences.SIGMA}")

@@ -148,6 +148,35 @@ def test_parameters_are_told_in_sigmas_of_their_tolerance_the_furthest_first() -
     assert len(moved) == 8  # of 14, every first and second of four moves by 2.4 and -1.3 sigma
 
 
+def test_every_nominal_parameter_has_its_value_before_and_after() -> None:
+    """A dozen fit into the text; of more only those that moved are listed, and the rest are counted."""
+    answer = SAMPLES["effect"]()
+    lines = report_text(answer).splitlines()
+    start = lines.index("Nominal parameters")
+    table = "\n".join(lines[start : lines.index("", start + 3)])
+    assert all(f"  {item.name} " in table for item in answer.parameters)
+    assert "refitted (95 % interval)" in table
+    assert "a value known to 10 % that halves has moved by ln(0.5)/0.1 = -6.9 sigma" in " ".join(table.split())
+    many = dataclasses.replace(
+        answer, parameters=tuple(dataclasses.replace(p, name=f"{p.name}_{k}") for k in "ab" for p in answer.parameters)
+    )
+    text = report_text(many)
+    moved = [item for item, _ in sentences.moved_parameters(many)]
+    assert f"  {28 - len(moved)} more moved by less than 1 sigma; diagnosis.json has them all under 'parameters'" in text
+    assert math.log(0.5) / 0.1 == pytest.approx(-6.9, abs=0.05)
+
+
+def test_a_parameter_far_off_that_is_not_claimed_stands_beside_the_verdict() -> None:
+    answer = SAMPLES["none"]()
+    far = dataclasses.replace(answer.parameters[0], name="motor_inertia", nominal=2.0, value=2.0 * math.exp(-0.17), tolerance=0.05)
+    off = dataclasses.replace(answer, parameters=(far, *answer.parameters[1:]))
+    said = "The fit moved motor inertia by -3.4 sigma of its tolerance, which the verdict does not claim"
+    assert report_text(off).splitlines()[4].startswith(said)
+    assert sentences.strained(answer) == ""
+    claimed = dataclasses.replace(off, causes=(dataclasses.replace(SAMPLES["parameter"]().causes[0], parameters=(far,)),))
+    assert sentences.strained(claimed) == ""
+
+
 def test_domain_names_the_part_that_holds_more_than_its_share() -> None:
     said = sentences.domain_sentences(SAMPLES["effect"]().domain)
     # of eight equal bins with 12, 5, 2, 1, 0.5, 0.3, 0.1 the first holds 12/20.9 = 57 %
