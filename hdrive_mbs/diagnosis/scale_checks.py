@@ -47,8 +47,8 @@ def check_scale(trial: Trial, column: str, simulated: FloatArray, unit: str) -> 
     if causes:
         raise RecordError(
             f"Record {trial.name!r}: {column!r} is {both / power:.4g} times what {trial.measured[column].channel} of the nominal scene"
-            f" does, as if {' or '.join(causes)}. Give the unit of the numbers when reading, units={{{column!r}: ...}} (--unit"
-            f" {column}=...), or the column the channel that it measures."
+            f" does, as if {' or '.join(causes)}. Give the unit of the numbers when reading, units={{{column!r}: ...}},"
+            " or the column the channel that it measures."
         )
 
 
