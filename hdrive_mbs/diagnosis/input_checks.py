@@ -22,6 +22,7 @@ from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import ParameterError, RecordError, UnitError, unknown_place
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.quantities import Described, Quantity
+from hdrive_mbs.records.measurement import Measurement
 from hdrive_mbs.records.record import Record
 
 FloatArray = npt.NDArray[np.float64]
@@ -50,6 +51,9 @@ def check_records(bench: Bench, records: Sequence[Record]) -> None:
         raise ParameterError(f"Two records are named {twice[0]!r}; give each its own name, like record.replacing(name='...').")
     for record in records:
         record.checked()
+        for name in bench.measured:
+            if name in record.channels:
+                _check_measured(bench, record, name)
         for name in bench.inputs:
             if name in record.channels:
                 _check_input(bench, record, name)
@@ -80,6 +84,22 @@ def _units(network: Network) -> dict[str, str]:
     return units | shaken
 
 
+def _check_measured(bench: Bench, record: Record, name: str) -> None:
+    wanted = _units(bench.scene.network()).get(bench.measured[name].channel)
+    column = record.channels[name]
+    if wanted is not None and column.unit != wanted:
+        raise RecordError(
+            f"Record {record.name!r}: column {name!r} is in {_written(column)}, but {bench.measured[name].channel!r}, which it measures,"
+            f" is in {wanted}. Correct the unit when reading: units={{{name!r}: ...}}."
+        )
+
+
+def _written(column: Measurement) -> str:
+    """Unit of a column as it was written, with what became of it."""
+    shown = column.unit if column.unit != "1" else "no unit (1)"
+    return shown if column.given in ("", column.unit) else f"{column.given!r}, which is read as {shown}"
+
+
 def _check_input(bench: Bench, record: Record, name: str) -> None:
     values = record.channels[name].values
     bad = ~np.isfinite(values)
@@ -91,10 +111,10 @@ def _check_input(bench: Bench, record: Record, name: str) -> None:
         )
     item = bench.inputs[name]
     unit = _unit_of_law(item.law((0.0, 1.0), (0.25, 0.75)), (0.25, 0.75))
-    given = record.channels[name].unit
-    if unit and given != unit:
+    column = record.channels[name]
+    if unit and column.unit != unit:
         raise UnitError(
-            f"Record {record.name!r}: column {name!r} is in {given if given != '1' else 'no unit (1)'}, but {item.path}, which it drives,"
+            f"Record {record.name!r}: column {name!r} is in {_written(column)}, but {item.path}, which it drives,"
             f" is in {unit}. Correct the unit when reading: units={{{name!r}: ...}}, or take another column."
         )
 

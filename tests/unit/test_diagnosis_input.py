@@ -151,6 +151,12 @@ def test_a_column_in_an_impossible_unit_is_refused() -> None:
     refused(hm.RecordError, "'motor_angle' is in N m, but 'motor_encoder'", "is in rad", "units={'motor_angle':", given=(wrong,))
 
 
+def test_a_unit_that_does_not_fit_is_quoted_as_it_was_written() -> None:
+    first = quiet()[0]
+    wrong = first.with_channels(item.replacing(unit="N m", given="kp*cm") if item.name == "motor_angle" else item for item in first)
+    refused(hm.RecordError, "'motor_angle' is in 'kp*cm', which is read as N m, but 'motor_encoder', which it measures", given=(wrong,))
+
+
 def test_an_input_in_an_impossible_unit_is_refused() -> None:
     wrong = quiet()[0].with_channels(item.replacing(unit="1" if item.name == "load_torque" else item.unit) for item in quiet()[0])
     refused(hm.UnitError, "'load_torque' is in no unit (1), but load.torque, which it drives, is in N m", given=(wrong,))
