@@ -26,6 +26,7 @@ from hdrive_mbs.diagnosis.input_checks import check_records, check_trials, not_c
 from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.pictured import pictured
 from hdrive_mbs.diagnosis.result import Cause, Diagnosis, Separation
+from hdrive_mbs.diagnosis.scale_checks import looks_scaled
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.diagnosis.suspects import Label
@@ -92,7 +93,7 @@ def diagnose(
     step = suitable_step(trials, factors) if step is None else step
     coarse, fine = Simulator(searched, step, EVERY), Simulator(trials, step)
     check_trials(coarse, factors)
-    warnings = (*not_driven(known, chosen, coarse, factors), *not_compared(known, chosen))
+    warnings = (*not_driven(known, chosen, coarse, factors), *not_compared(known, chosen), *looks_scaled(coarse, factors))
     check_candidates(tried, coarse, factors)
     journal = None
     if folder is not None:

@@ -20,7 +20,7 @@ from hdrive_mbs.diagnosis.input_checks import check_trials, not_compared, not_dr
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.report_text import report_text
 from hdrive_mbs.diagnosis.result import Diagnosis
-from hdrive_mbs.diagnosis.scale_checks import check_scale
+from hdrive_mbs.diagnosis.scale_checks import check_scale, looks_scaled
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.effects.bearing_cubic_stiffness import BearingCubicStiffness
@@ -79,6 +79,33 @@ def test_a_factor_that_no_unit_has_is_a_gap_and_not_a_unit() -> None:
     [own] = simulator.columns(hypothesis, np.zeros(hypothesis.size))
     check_scale(simulator.trials[0], "motor_angle", own["motor_angle"], "rad")
     check_scale(simulator.trials[0], "motor_torque", own["motor_torque"], "N m")
+
+
+def test_degrees_read_as_radians_are_seen_though_the_model_does_something_else() -> None:
+    """A model whose load has five times the drag turns half as far: beside the motor's angle the load's shows the unit all the same."""
+    for size, off in ((180.0 / math.pi, True), (1.0, False), (1.3, False)):
+        [trial] = bench().trials(changed("load_angle", lambda values, size=size: size * values)[0])
+        columns = {name: 0.45 * trial.columns[name] for name in ("motor_angle", "load_angle")}
+        items = {name: trial.measured[name] for name in columns}
+        simulator = Simulator([dataclasses.replace(trial, columns=columns, measured=items)], 1e-3)
+        said = looks_scaled(simulator, factors_of(bench()))
+        assert [text.startswith("Record 'staircase': column 'load_angle' looks as if its numbers were in deg") for text in said] == [
+            True
+        ] * off
+        if off:
+            assert "beside 'motor_angle' it moves 57" in said[0]
+
+
+def test_an_angle_is_held_against_a_speed_of_another_place_too() -> None:
+    first = quiet()[0]
+    [trial] = bench().trials(first)
+    speed = np.gradient(trial.columns["motor_angle"], trial.every)
+    items = {"load_angle": trial.measured["load_angle"], "motor_speed": Measured(channel="motor.speed", noise=0.5)}
+    columns = {"load_angle": 0.4 * 180.0 / math.pi * trial.columns["load_angle"], "motor_speed": 0.4 * speed}
+    simulator = Simulator([dataclasses.replace(trial, columns=columns, measured=items)], 1e-3)
+    [said] = looks_scaled(simulator, factors_of(bench()))
+    assert "column 'load_angle' looks as if its numbers were in deg" in said
+    assert "beside 'motor_speed'" in said
 
 
 def test_what_is_no_record_is_refused_and_one_class_is_a_list_of_one() -> None:
