@@ -67,7 +67,7 @@ def _draw(name: str, result: Diagnosis, ax: Axes) -> None:
     else:
         worst = worst_first(result)[0]
         plot_traces(result, ax, record=worst.record, column=worst.column, residuals=True)
-        ax.set_ylabel(f"{readable(worst.column)} of\n{readable(worst.record)}:\n{ax.get_ylabel()}")
+        ax.set_xlabel(f"time [s] ({readable(worst.column)}, record {worst.record!r})")
 
 
 def worst_first(result: Diagnosis) -> list[Trace]:
