@@ -105,7 +105,8 @@ def diagnose(
         watch(evidence)
     found = answer(known, chosen, evidence, started=started, pictures=pictures)
     notes = (*left_out(tried, evidence.single, step), *(() if journal is None else journal.said))
-    return dataclasses.replace(found, notes=(*found.notes, *notes), warnings=warnings)
+    driven = {name: item.path for name, item in known.inputs.items()}
+    return dataclasses.replace(found, notes=(*found.notes, *notes), warnings=warnings, inputs=driven)
 
 
 def _records(records: Records | Sequence[Record] | Record) -> tuple[Record, ...]:

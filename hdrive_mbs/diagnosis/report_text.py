@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from hdrive_mbs.diagnosis import report_rows, sentences
+from hdrive_mbs.diagnosis.improved_words import improved_words
 from hdrive_mbs.diagnosis.readable import probability
 from hdrive_mbs.diagnosis.report_rows import Table
 from hdrive_mbs.diagnosis.result import Cause, Diagnosis
@@ -52,7 +53,7 @@ def _lines(diagnosis: Diagnosis) -> Iterator[str]:
     if not sentences.only_noise(diagnosis):
         yield from _section("Where in the operating range (refitted nominal model)", sentences.domain_sentences(diagnosis.domain))
     yield from _section("Measure next", sentences.next_sentences(diagnosis.next_records))
-    yield from _section("Notes", diagnosis.notes)
+    yield from _section("Notes", (*diagnosis.notes, *improved_words(diagnosis)))
     yield ""
     yield from _wrapped(sentences.made(diagnosis), indent="")
 

@@ -8,6 +8,7 @@ from html import escape
 from pathlib import Path
 
 from hdrive_mbs.diagnosis import report_rows, sentences
+from hdrive_mbs.diagnosis.improved_words import improved_words
 from hdrive_mbs.diagnosis.readable import digits, named, probability
 from hdrive_mbs.diagnosis.result import Diagnosis, Trace
 from hdrive_mbs.plots.diagnosis import worst_first
@@ -51,7 +52,7 @@ def report_body(diagnosis: Diagnosis) -> Iterator[str]:
     yield from _ranking(diagnosis)
     yield from _parameters(diagnosis)
     yield from bullets("Measure next", sentences.next_sentences(diagnosis.next_records))
-    yield from bullets("Notes", diagnosis.notes)
+    yield from bullets("Notes", (*diagnosis.notes, *improved_words(diagnosis)))
     yield f"<footer>{escape(sentences.made(diagnosis))}</footer>"
 
 
