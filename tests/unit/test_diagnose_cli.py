@@ -22,7 +22,7 @@ from typer.testing import CliRunner
 import hdrive_mbs as hm
 from hdrive_mbs.cli.main import app, main
 from hdrive_mbs.cli.python_file import own_effects
-from hdrive_mbs.cli.stages import stage_bars
+from hdrive_mbs.cli.stages import plain_lines, stage_bars
 from hdrive_mbs.diagnosis import diagnose as search
 from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.diagnosis.candidates import known_effects
@@ -343,6 +343,18 @@ def test_stages_are_shown_on_a_terminal_only() -> None:
         report("screening", 1, 4)
         report("screening", 4, 4)
         report("joint fits", 0, 0)  # a stage without work divides nothing by nothing
+
+
+def test_without_a_terminal_a_plain_line_comes_every_half_minute(capsys: pytest.CaptureFixture[str]) -> None:
+    times = iter((100.0, 101.0, 129.0, 131.0, 140.0, 175.0))
+    report = plain_lines(clock=lambda: next(times))
+    for stage, done, total in (("first", 1, 4), ("first", 2, 4), ("first", 3, 4), ("second", 0, 1), ("third", 0, 1)):
+        report(stage, done, total)
+    assert capsys.readouterr().err == "31 s: first, 3 of 4\n75 s: third\n"
+    with stage_bars() as shown:  # stderr is no terminal here
+        assert shown is not None
+        shown("first", 1, 4)
+    assert capsys.readouterr().err == ""
 
 
 def test_tests_leave_no_effect_behind() -> None:
