@@ -100,17 +100,24 @@ def _stretch(simulator: Simulator, null: Fitted, claimed: Fitted | None, k: int,
     speed, angle = reference_shaft(motion)
     measured = _measured_speed(motion)
     speed = np.where(np.isfinite(measured), measured, speed)
-    torque = motion.reading(f"{carrier}.torque") if carrier else np.zeros(motion.trial.samples)
+    torque = motion.reading(f"{carrier}.torque") if _shows(motion, carrier) else np.zeros(motion.trial.samples)
     trial = simulator.trials[k]
     return _Stretch(trial.times[::each], speed[::each], angle[::each], torque[::each], used, before, after, trial.every * each)
 
 
 def _carrier(motions: Sequence[Motion]) -> str:
-    """The shaft or gear that carries the largest torque; empty where there is none."""
-    network = motions[0].network
-    known = {channel.name for channel in network.channels}
-    names = [item.name for item in network.elements if isinstance(item, Connection) and item.flanges and f"{item.name}.torque" in known]
-    return max(names, key=lambda name: sum(float(np.mean(motion.reading(f"{name}.torque") ** 2)) for motion in motions), default="")
+    """The shaft or gear that carries the largest torque over all trials, whose views may differ; empty where there is none."""
+    energy: dict[str, float] = {}
+    for motion in motions:
+        for item in motion.network.elements:
+            if isinstance(item, Connection) and item.flanges and _shows(motion, item.name):
+                energy[item.name] = energy.get(item.name, 0.0) + float(np.sum(motion.reading(f"{item.name}.torque") ** 2))
+    return max(energy, key=lambda name: energy[name], default="")
+
+
+def _shows(motion: Motion, name: str) -> bool:
+    """Whether a run can tell the torque of a part."""
+    return any(channel.name == f"{name}.torque" for channel in motion.network.channels)
 
 
 def _measured_speed(motion: Motion) -> FloatArray:

@@ -8,7 +8,9 @@ import math
 import numpy as np
 import pytest
 
+import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.domain import concentrated, domain_map
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.result import DomainBin
 from hdrive_mbs.diagnosis.sentences import domain_sentences
@@ -123,3 +125,21 @@ def test_speeds_and_torques_without_a_measured_one_are_those_of_the_run_with_the
     bins, again = (domain_map(simulator, first, fitted(simulator)) for first in (null, fitted(simulator, weak)))
     for over in ("speed", "torque"):
         assert [item.high for item in bins_over(bins, over)] == [item.high for item in bins_over(again, over)]
+
+
+def test_views_of_a_record_that_hold_different_parts_are_put_together() -> None:
+    """A rotor bench lays each record beside a line of its own; a part that one of them has not carries nothing there."""
+    simulator = recorded()
+    plain = simulator.trials[0]
+    lone = hm.Scene(name="motor alone", parts={"motor": plain.scene.parts["motor"]}, connections=[])
+    columns = {"motor_torque": plain.columns["motor_torque"]}
+    alone = dataclasses.replace(plain, name="motor", scene=lone, columns=columns, measured={"motor_torque": plain.measured["motor_torque"]})
+    both = Simulator([alone, plain], STEP)
+    bins = domain_map(both, dataclasses.replace(fitted(simulator), hypothesis=Hypothesis(()), z=np.zeros(0), residuals=_residuals(both)))
+    assert {item.of for item in bins_over(bins, "torque")} == {"gear"}
+
+
+def _residuals(simulator: Simulator) -> np.ndarray:
+    [found] = simulator.residuals(Hypothesis(()), [np.zeros(0)])
+    assert found is not None
+    return found
