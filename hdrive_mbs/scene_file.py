@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+import difflib
 import importlib
 import inspect
 import json
 import os
 import pkgutil
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,8 @@ from hdrive_mbs.units import factor, to_si
 from hdrive_mbs.writing import write_text
 
 FORMAT = "hdrive-mbs scene 1"
+MOST = 30
+"""Types that an error lists; of more only those that are spelt alike."""
 
 
 # -- out ------------------------------------------------------------------------------------------
@@ -69,17 +72,25 @@ def _plain(item: Described, where: str) -> dict[str, Any]:
     return result
 
 
-def save_scene(scene: Scene, path: str | os.PathLike[str]) -> Path:
-    """Write a scene as .toml or .json, whole or not at all."""
+def save_scene(scene: Scene, path: str | os.PathLike[str], *, head: Sequence[str] = ()) -> Path:
+    """Write a scene as .toml or .json, whole or not at all.
+
+    head : lines of a comment at the top of a .toml file; JSON has no comments
+    """
     import tomli_w
 
     suffix = Path(path).suffix.lower()
     document = scene_to_dict(scene)
     if suffix == ".toml":
-        return write_text(path, tomli_w.dumps(document))
+        return write_text(path, "".join(f"# {_one_line(line)}\n" for line in head) + tomli_w.dumps(document))
     if suffix == ".json":
         return write_text(path, json.dumps(document, indent=2) + "\n")
     raise FileFormatError(f"{path}: a scene file ends in .toml or .json.")
+
+
+def _one_line(text: str) -> str:
+    """Without line ends and other control characters, which a comment must not have."""
+    return "".join(letter for letter in " ".join(text.split()) if letter.isprintable())
 
 
 # -- in -------------------------------------------------------------------------------------------
@@ -175,6 +186,15 @@ def _expected(field: dataclasses.Field[Any], known: Mapping[str, type[Described]
     return tuple(known[word] for word in re.findall(r"\w+", str(field.type)) if word in known)
 
 
+def _choice(name: str, kinds: list[str]) -> str:
+    """The types that there can be: all where they are few, else those that are spelt alike."""
+    if len(kinds) <= MOST:
+        return f"it can be {', '.join(kinds)}"
+    near = difflib.get_close_matches(name, kinds, 5, 0.5)
+    which = f"; like it are {', '.join(near)}" if near else ", none of them spelt like it"
+    return f"it can be one of {len(kinds)} types{which} (hdrive-mbs effects lists the effects)"
+
+
 def _build(entry: Any, where: str, bases: tuple[type[Described], ...], known: Mapping[str, type[Described]]) -> Described:
     kinds = {key: kind for key, kind in known.items() if issubclass(kind, bases) and _usable(kind)}
     if not isinstance(entry, Mapping):
@@ -184,8 +204,8 @@ def _build(entry: Any, where: str, bases: tuple[type[Described], ...], known: Ma
     kind = kinds.get(name) if isinstance(name, str) else None
     if kind is None:
         raise PlaceError(
-            f"No type {str(name)!r}. {where}: it can be {', '.join(sorted(kinds))}. For a class of your own import its module "
-            "first, or use load_scene(path, types=[...]); for the command line do so in build() of a .py file."
+            f"No type {str(name)!r}. {where}: {_choice(str(name), sorted(kinds))}. For a class of your own import its module "
+            "first, or use load_scene(path, types=[...]); on the command line give the file of an effect with --effects FILE.py."
         )
     fields = {field.name: field for field in dataclasses.fields(kind)}
     values: dict[str, Any] = {}

@@ -83,6 +83,12 @@ def base_powers(given: str, where: str) -> dict[str, float]:
     return {name: float(power) for name, power in base._units.items() if power}
 
 
+def prefix_and_unit(name: str) -> tuple[str, str]:
+    """``"dgr"`` -> ("deci", "grain"); the prefix is empty for a unit that has a name of its own, both for one that is not known."""
+    found = _registry().parse_unit_name(name)
+    return next(((prefix, unit) for prefix, unit, _ in found if not prefix), (found[0][0], found[0][1]) if found else ("", ""))
+
+
 def _cycles(registry: Any, unit: str) -> bool:
     return any(name.endswith("hertz") for name in registry.parse_units(unit)._units)
 

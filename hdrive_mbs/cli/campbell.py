@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hdrive_mbs.cli.options import Effects, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
 from hdrive_mbs.cli.output import print_table, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.cli.speeds import parse_orders, parse_speeds
@@ -19,6 +19,7 @@ def campbell(
     scene: ScenePath,
     set_: Settings = None,
     effect: Effects = None,
+    effects: EffectFiles = None,
     speeds: Annotated[
         str, typer.Option(metavar="FIRST:LAST:COUNT", help="Speeds of the reference shaft [rad/s], or with units: '0:12000:101 rpm'.")
     ] = "0:1000:101",
@@ -32,7 +33,7 @@ def campbell(
     """Damped frequencies, damping and whirl over speed; critical speeds and stability thresholds."""
     from hdrive_mbs.analysis.whirl.whirl_campbell import campbell as analyse
 
-    chosen = open_scene(scene, set_ or (), effect or ())
+    chosen = open_scene(scene, set_ or (), effect or (), effects or ())
     result = analyse(chosen, parse_speeds("--speeds", speeds), parse_orders("--orders", orders), count=count)
     if out is not None:
         from hdrive_mbs.analysis.result import write_csv

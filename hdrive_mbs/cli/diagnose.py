@@ -124,13 +124,14 @@ def tried(files: Sequence[Path], only: Sequence[str] = ()) -> list[type[Effect]]
 
 def write_answer(result: Diagnosis, folder: Path) -> None:
     """Text, JSON, improved scene, summary picture and page into a folder; the answer itself first."""
+    from hdrive_mbs.diagnosis.improved_words import improved_words
     from hdrive_mbs.diagnosis.report_json import write_report_json
     from hdrive_mbs.diagnosis.report_text import write_report
 
     write_report_json(result, folder / "diagnosis.json")
     write_report(result, folder / "diagnosis.txt")
     try:
-        save_scene(result.improved, folder / "improved.toml")
+        save_scene(result.improved, folder / "improved.toml", head=improved_words(result))
     except FileFormatError as error:
         print(f"The improved scene was not written: {error}", file=sys.stderr)
     from hdrive_mbs.plots import plot, save_figure

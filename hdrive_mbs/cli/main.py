@@ -24,6 +24,7 @@ from hdrive_mbs.cli import (
     torsion,
     unbalance,
 )
+from hdrive_mbs.cli.wording import on_command_line
 from hdrive_mbs.errors import HdriveError
 
 app = typer.Typer(
@@ -65,7 +66,7 @@ def main() -> None:
     try:
         app()
     except HdriveError as error:
-        print(f"error: {error}", file=sys.stderr)
+        print(f"error: {on_command_line(str(error))}", file=sys.stderr)
         sys.exit(2)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hdrive_mbs.cli.options import Effects, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
 from hdrive_mbs.cli.output import print_table, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 
@@ -19,6 +19,7 @@ def modes(
     scene: ScenePath,
     set_: Settings = None,
     effect: Effects = None,
+    effects: EffectFiles = None,
     torque: Annotated[float | None, typer.Option(help="Load torque [N m] in place of the scene's load at t = 0.")] = None,
     speed: Annotated[
         float | None, typer.Option(help="Motor speed [rad/s]; by default where motor and load balance, of a rotor line 0.")
@@ -30,7 +31,7 @@ def modes(
     """Natural frequencies, damping ratios and mode shapes of the linearised scene."""
     from hdrive_mbs.analysis.drive_train.modes import modes as analyse
 
-    chosen = open_scene(scene, set_ or (), effect or ())
+    chosen = open_scene(scene, set_ or (), effect or (), effects or ())
     if chosen.network().is_lateral:
         _whirl_modes(chosen, torque, speed, count, out, json)
         return

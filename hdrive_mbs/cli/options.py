@@ -16,5 +16,9 @@ Effects = Annotated[
     list[str] | None,
     typer.Option("--effect", metavar="TYPE@PLACE:field=value,...", help="Add an effect, e.g. CoulombStribeckFriction@load:coulomb=2."),
 ]
+EffectFiles = Annotated[
+    list[Path] | None,
+    typer.Option("--effects", metavar="FILE.py", help="A file of your own whose Effect classes the scene file or --effect names."),
+]
 JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write figures as JSON ('-' for stdout).")]
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for results and pictures.")]

@@ -35,11 +35,16 @@ Repairs = Annotated[
 
 def reading_of(channel: Sequence[str] | None, unit: Sequence[str] | None, time: str | None, repair: Sequence[str] | None) -> dict[str, Any]:
     """What ``read_records`` is told besides the files.  Raises FileFormatError for a text that is not NAME=VALUE."""
+    repairs: dict[str, Any] = dict(_pairs("--repair", repair))
+    if "longest" in repairs:
+        if not repairs["longest"].isdecimal():
+            raise FileFormatError(f"--repair longest={repairs['longest']}: write a number of samples, like longest=20.")
+        repairs["longest"] = int(repairs["longest"])
     return {
         "channels": _pairs("--channel", channel) or None,
         "units": _pairs("--unit", unit),
         "time": time,
-        "repair": _pairs("--repair", repair) or None,
+        "repair": repairs or None,
     }
 
 

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from hdrive_mbs.cli.options import Effects, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
 from hdrive_mbs.cli.output import print_table, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.engine import solvers
@@ -21,6 +21,7 @@ def run(
     scene: ScenePath,
     set_: Settings = None,
     effect: Effects = None,
+    effects: EffectFiles = None,
     duration: Annotated[float, typer.Option(help="Simulated time [s].")] = 1.0,
     initial_speed: Annotated[float, typer.Option(help="Motor speed at t = 0 [rad/s].")] = 0.0,
     solver: Annotated[str, typer.Option(help="automatic, dormand-prince, runge-kutta-4, trapezoidal or generalized-alpha.")] = "automatic",
@@ -38,7 +39,7 @@ def run(
     from hdrive_mbs.plots import save_figure
     from hdrive_mbs.plots.response import chosen_channels
 
-    chosen = open_scene(scene, set_ or (), effect or ())
+    chosen = open_scene(scene, set_ or (), effect or (), effects or ())
     taken = _solver(solver, tolerance, step, chosen.network().is_lateral)
     response = simulate(chosen, duration, solver=taken, initial_speed=initial_speed, estimate_error=estimate_error)
     folder = out or Path("results") / re.sub(r"\W+", "_", chosen.name)

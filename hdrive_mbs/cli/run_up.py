@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hdrive_mbs.cli.options import Effects, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
 from hdrive_mbs.cli.output import print_table, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 
@@ -20,6 +20,7 @@ def run_up(
     scene: ScenePath,
     set_: Settings = None,
     effect: Effects = None,
+    effects: EffectFiles = None,
     duration: Annotated[float, typer.Option(help="Simulated time [s].")] = 2.5,
     initial_speed: Annotated[float, typer.Option(help="Speed at t = 0 [rad/s].")] = 0.0,
     coast_down: Annotated[bool, typer.Option("--coast-down", help="Drive switched off, from --initial-speed.")] = False,
@@ -35,7 +36,7 @@ def run_up(
     from hdrive_mbs.engine.solvers import Trapezoidal
     from hdrive_mbs.plots import plot, save_figure
 
-    chosen = open_scene(scene, set_ or (), effect or ())
+    chosen = open_scene(scene, set_ or (), effect or (), effects or ())
     options: dict[str, Any] = {"accuracy": accuracy, "initial_speed": initial_speed, "estimate_error": estimate_error}
     if step is not None:
         options["solver"] = Trapezoidal(step=step, newton_tolerance=min(max(0.01 * accuracy, 1e-10), 1e-5))

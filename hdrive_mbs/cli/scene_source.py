@@ -11,6 +11,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from hdrive_mbs.cli.python_file import own_effects
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import FileFormatError, ParameterError, SceneError, unknown_place
 from hdrive_mbs.quantities import Quantity
@@ -19,16 +20,18 @@ from hdrive_mbs.scene_file import all_types, load_scene, parse_setting
 from hdrive_mbs.units import to_si
 
 
-def open_scene(path: Path, settings: Sequence[str] = (), effects: Sequence[str] = ()) -> Scene:
+def open_scene(path: Path, settings: Sequence[str] = (), effects: Sequence[str] = (), own: Sequence[Path] = ()) -> Scene:
     """The scene of a .py file (its ``build()``) or of a .toml or .json file, with changes applied.
 
     settings : ``PATH=VALUE``; a name without a dot that is an argument of build() is passed to it
     effects : ``TYPE@PLACE:field=value,field=value``
+    own : .py files with effect classes that these or the scene file name
     """
+    kinds = [kind for file in own for kind in own_effects(file)]
     if path.suffix == ".py":
         scene, rest = _build(path, settings)
     else:
-        scene, rest = load_scene(path), list(settings)
+        scene, rest = load_scene(path, kinds), list(settings)
     for text in rest:
         name, value = parse_setting(scene, text)
         scene = scene.replacing({name: value})
@@ -103,7 +106,7 @@ def parse_effect(text: str) -> tuple[Effect, str]:
     if not sign or not place:
         raise FileFormatError(f"{text!r}: write TYPE@PLACE:field=value,field=value.")
     if name not in kinds:
-        raise unknown_place("effect", name, kinds, "The library (with what the scene's .py file imports: import your own effect there)")
+        raise unknown_place("effect", name, kinds, "The library (with what the scene's .py file imports, and --effects FILE.py)")
     known: dict[str, Quantity | None] = {field.name: field.metadata.get("quantity") for field in dataclasses.fields(kinds[name])}
     values: dict[str, Any] = {}
     for item in filter(None, fields.split(",")):

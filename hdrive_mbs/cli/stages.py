@@ -1,23 +1,27 @@
-"""Progress of work in stages, each with its time left; silent without a terminal."""
+"""Progress of work in stages: bars with the time left on a terminal, else a plain line now and then."""
 
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 StageReport = Callable[[str, int, int], None]
+SELDOM = 30.0
+"""Seconds from one plain line to the next."""
 
 
 @contextmanager
 def stage_bars(show: bool | None = None) -> Iterator[StageReport | None]:
     """Yields ``report(stage, done, total)``, or None when nothing shall be shown.
 
-    show : True, False, or None for "when stderr is a terminal"
+    show : True for bars, False for nothing, None for bars on a terminal and plain lines on stderr without one
     """
-    if show is None:
-        show = sys.stderr.isatty()
-    if not show:
+    if show is None and not sys.stderr.isatty():
+        yield plain_lines()
+        return
+    if show is False:
         yield None
         return
     from rich.console import Console
@@ -43,3 +47,18 @@ def stage_bars(show: bool | None = None) -> Iterator[StageReport | None]:
             bars.update(tasks[stage], total=max(total, 1), completed=min(done, total), visible=True)
 
         yield report
+
+
+def plain_lines(every: float = SELDOM, clock: Callable[[], float] = time.monotonic) -> StageReport:
+    """A report that writes a line to stderr whenever the last one is ``every`` seconds ago, and none for work that is done before."""
+    started = last = clock()
+
+    def report(stage: str, done: int, total: int) -> None:
+        nonlocal last
+        now = clock()
+        if now - last >= every:
+            last = now
+            part = f", {min(done, total)} of {total}" if total > 1 else ""
+            print(f"{now - started:.0f} s: {stage}{part}", file=sys.stderr, flush=True)
+
+    return report

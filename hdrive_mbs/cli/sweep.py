@@ -18,6 +18,7 @@ from hdrive_mbs.cli.options import Effects, JsonFile, ScenePath, Settings
 from hdrive_mbs.cli.output import print_table, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.cli.speeds import parse_orders, parse_speeds
+from hdrive_mbs.cli.wording import on_command_line
 from hdrive_mbs.errors import FileFormatError, HdriveError, ParameterError
 from hdrive_mbs.quantities import Described
 from hdrive_mbs.scene import Scene
@@ -212,7 +213,7 @@ def tell_failures(failures: Sequence[Mapping[str, Any]], folder: Path, of: Calla
         return
     told = [f"failed: {of(failure['parameters'])}: {failure['error']}\n" for failure in failures]
     write_text(file, "\n".join(line + failure["traceback"] for line, failure in zip(told, failures, strict=True)))
-    print("".join(told[:10]), end="", file=sys.stderr)
+    print(on_command_line("".join(told[:10])), end="", file=sys.stderr)
     print(f"{len(failures)} failed; all of them with traceback: {file}", file=sys.stderr)
 
 

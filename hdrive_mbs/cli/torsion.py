@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from hdrive_mbs.cli.options import Effects, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
 from hdrive_mbs.cli.output import print_table, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.errors import ParameterError
@@ -16,6 +16,7 @@ def torsion(
     scene: ScenePath,
     set_: Settings = None,
     effect: Effects = None,
+    effects: EffectFiles = None,
     at: Annotated[str, typer.Option(help="Gear or shaft whose twist is measured.")] = "gear",
     between: Annotated[str | None, typer.Option(metavar="A,B", help="Twist between two places instead, input A held.")] = None,
     torques: Annotated[str | None, typer.Option(metavar="T,T,...", help="Torques [N m].")] = None,
@@ -26,7 +27,7 @@ def torsion(
     """Torque against angle with the input held, as a gear catalogue measures it."""
     from hdrive_mbs.analysis.drive_train.torsion import torsion as analyse
 
-    chosen = open_scene(scene, set_ or (), effect or ())
+    chosen = open_scene(scene, set_ or (), effect or (), effects or ())
     wanted = None if torques is None else _numbers(torques)
     if between is not None:
         first, _, second = between.partition(",")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 import typer
 
-from hdrive_mbs.cli.options import Effects, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
 from hdrive_mbs.cli.output import print_table, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.cli.speeds import parse_speeds
@@ -21,6 +21,7 @@ def unbalance(
     scene: ScenePath,
     set_: Settings = None,
     effect: Effects = None,
+    effects: EffectFiles = None,
     speeds: Annotated[
         str,
         typer.Option(metavar="FIRST:LAST:COUNT", help="Speeds of the reference shaft [rad/s], or with units: '0:12000:401 rpm'."),
@@ -35,7 +36,7 @@ def unbalance(
     """Amplitude and phase of steady whirl over speed; every amplitude is 0-peak."""
     from hdrive_mbs.analysis.unbalance.unbalance_response import unbalance_response
 
-    chosen = open_scene(scene, set_ or (), effect or ())
+    chosen = open_scene(scene, set_ or (), effect or (), effects or ())
     grid = parse_speeds("--speeds", speeds)
     result = unbalance_response(chosen, grid, extra=dict(_trial(text) for text in extra or ()))
     wanted = result.places if places is None else tuple(name.strip() for name in places.split(","))

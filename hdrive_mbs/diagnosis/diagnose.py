@@ -22,10 +22,11 @@ from hdrive_mbs.diagnosis.experiment.choose import next_records
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.gap import gaps
 from hdrive_mbs.diagnosis.gather import Evidence, gather
-from hdrive_mbs.diagnosis.input_checks import check_records, check_trials, not_compared
+from hdrive_mbs.diagnosis.input_checks import check_records, check_trials, not_compared, not_driven
 from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.pictured import pictured
 from hdrive_mbs.diagnosis.result import Cause, Diagnosis, Separation
+from hdrive_mbs.diagnosis.scale_checks import looks_scaled
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.diagnosis.suspects import Label
@@ -92,6 +93,7 @@ def diagnose(
     step = suitable_step(trials, factors) if step is None else step
     coarse, fine = Simulator(searched, step, EVERY), Simulator(trials, step)
     check_trials(coarse, factors)
+    warnings = (*not_driven(known, chosen, coarse, factors), *not_compared(known, chosen), *looks_scaled(coarse, factors))
     check_candidates(tried, coarse, factors)
     journal = None
     if folder is not None:
@@ -102,8 +104,9 @@ def diagnose(
     if watch is not None:
         watch(evidence)
     found = answer(known, chosen, evidence, started=started, pictures=pictures)
-    notes = (*not_compared(known, chosen), *left_out(tried, evidence.single, step), *(() if journal is None else journal.said))
-    return dataclasses.replace(found, notes=(*found.notes, *notes))
+    notes = (*left_out(tried, evidence.single, step), *(() if journal is None else journal.said))
+    driven = {name: item.path for name, item in known.inputs.items()}
+    return dataclasses.replace(found, notes=(*found.notes, *notes), warnings=warnings, inputs=driven)
 
 
 def _records(records: Records | Sequence[Record] | Record) -> tuple[Record, ...]:

@@ -1,8 +1,9 @@
 """Where in the operating range the gap is: at which speed, torque, direction, order, frequency and time.
 
-Each bin holds the mean square of the whitened residuals minus 1, which noise alone would give.  Speed, torque and angle
-are those of the fitted model.  Orders are counted per turn of the reference shaft: Fourier sums over the angle in
-windows of whole turns, so that a slow and a fast stretch of the same ripple fall into one bin.
+Each bin holds the mean square of the whitened residuals minus 1, which noise alone would give.  The speed is the measured one
+where a column holds that of the reference shaft; it, torque and angle are else those of the best fit, for a model that lacks a
+cause runs at speeds and torques that the machine never had.  Orders are counted per turn of the reference shaft: Fourier sums
+over the angle in windows of whole turns, so that a slow and a fast stretch of the same ripple fall into one bin.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from hdrive_mbs.diagnosis.locate.motion import Motion, motion_of
 from hdrive_mbs.diagnosis.locate.spectra import windowed
 from hdrive_mbs.diagnosis.result import DomainBin
 from hdrive_mbs.diagnosis.simulator import Simulator
-from hdrive_mbs.diagnosis.turning import reference_shaft
+from hdrive_mbs.diagnosis.turning import reference_place, reference_shaft
 from hdrive_mbs.network.elements import Connection
 
 FloatArray = npt.NDArray[np.float64]
@@ -39,6 +40,8 @@ CLEAR = 5.0
 """Standard deviations of the mean square of noise above which a bin's excess is clear."""
 PEAK = 3.0
 """Times the larger of the two beside it that an order must be to stand out."""
+SAME = 1e-3
+"""Of its largest: by what the modelled reading of a column may differ from the speed of the reference shaft and still be it."""
 MOST, FEW = 0.6, 0.35
 """The gap is concentrated where more than this share of its energy lies in less than this share of the samples."""
 
@@ -62,49 +65,91 @@ def domain_map(simulator: Simulator, null: Fitted, claimed: Fitted | None = None
 
     null, claimed : fitted on this simulator
     """
-    stretches = [_stretch(simulator, null, claimed, k) for k in range(len(simulator.trials))]
+    best = null if claimed is None else claimed
+    motions = [motion_of(simulator, k, best.hypothesis, best.z) for k in range(len(simulator.trials))]
+    carrier = _carrier(motions)
+    stretches = [_stretch(simulator, null, claimed, k, motion, carrier) for k, motion in enumerate(motions)]
+    turned = reference_place(motions[0].network)
+    shaft = turned[0] if turned is not None else ""
     fastest = max(float(np.max(np.abs(item.speed))) for item in stretches)
     found: list[DomainBin] = []
     if fastest > 0.0:
-        found += _binned("speed", "rad/s", stretches, lambda item: np.abs(item.speed), np.linspace(0.0, fastest, PARTS + 1))
+        edges = np.linspace(0.0, fastest, PARTS + 1)
+        found += _binned("speed", shaft, "rad/s", stretches, lambda item: np.abs(item.speed), edges)
     largest = max(float(np.max(np.abs(item.torque))) for item in stretches)
     if largest > 0.0:
         negative = min(float(np.min(item.torque)) for item in stretches) < -0.1 * largest
         edges = np.linspace(-largest, largest, PARTS + 2) if negative else np.linspace(0.0, largest, PARTS + 1)
-        found += _binned("torque", "N m", stretches, lambda item: item.torque if negative else np.abs(item.torque), edges)
+        found += _binned("torque", carrier, "N m", stretches, lambda item: item.torque if negative else np.abs(item.torque), edges)
     if fastest > 0.0:
         edges = np.array([-fastest, -REST * fastest, REST * fastest, fastest])
-        found += _binned("direction", "rad/s", stretches, lambda item: item.speed, edges)
-        found += _orders(stretches)
+        found += _binned("direction", shaft, "rad/s", stretches, lambda item: item.speed, edges)
+        found += _orders(shaft, stretches)
     found += _frequencies(stretches)
     longest = max(float(item.times[-1] + item.every) for item in stretches)
-    found += _binned("time", "s", stretches, lambda item: item.times, np.linspace(0.0, longest, TIMES + 1))
+    found += _binned("time", "", "s", stretches, lambda item: item.times, np.linspace(0.0, longest, TIMES + 1))
     return tuple(found)
 
 
-def _stretch(simulator: Simulator, null: Fitted, claimed: Fitted | None, k: int) -> _Stretch:
-    motion = motion_of(simulator, k, null.hypothesis, null.z)
+def _stretch(simulator: Simulator, null: Fitted, claimed: Fitted | None, k: int, motion: Motion, carrier: str) -> _Stretch:
     each = simulator.every
     spans = [segment.span for segment in simulator.segments if segment.trial == k]
     used = np.array([simulator.used[span] for span in spans])
     before = np.array([null.residuals[span] for span in spans]) * used
     after = np.full(before.shape, np.nan) if claimed is None else np.array([claimed.residuals[span] for span in spans]) * used
     speed, angle = reference_shaft(motion)
-    torque = _torque(motion)
+    measured = _measured_speed(motion)
+    speed = np.where(np.isfinite(measured), measured, speed)
+    torque = motion.reading(f"{carrier}.torque") if _shows(motion, carrier) else np.zeros(motion.trial.samples)
     trial = simulator.trials[k]
     return _Stretch(trial.times[::each], speed[::each], angle[::each], torque[::each], used, before, after, trial.every * each)
 
 
-def _torque(motion: Motion) -> FloatArray:
-    """Of the shaft or gear that carries the largest one."""
-    known = {channel.name for channel in motion.network.channels}
-    names = [f"{item.name}.torque" for item in motion.network.elements if isinstance(item, Connection) and item.flanges]
-    found = [motion.reading(name) for name in names if name in known]
-    return max(found, key=lambda values: float(np.mean(values**2)), default=np.zeros(motion.trial.samples))
+def _carrier(motions: Sequence[Motion]) -> str:
+    """The shaft or gear that carries the largest torque over all trials, whose views may differ; empty where there is none."""
+    energy: dict[str, float] = {}
+    for motion in motions:
+        for item in motion.network.elements:
+            if isinstance(item, Connection) and item.flanges and _shows(motion, item.name):
+                energy[item.name] = energy.get(item.name, 0.0) + float(np.sum(motion.reading(f"{item.name}.torque") ** 2))
+    return max(energy, key=lambda name: energy[name], default="")
+
+
+def _shows(motion: Motion, name: str) -> bool:
+    """Whether a run can tell the torque of a part."""
+    return any(channel.name == f"{name}.torque" for channel in motion.network.channels)
+
+
+def _measured_speed(motion: Motion) -> FloatArray:
+    """Speed of the reference shaft [rad/s] by the column of least noise that measures it, in its true sense; nan where there is none.
+
+    A column measures it whose channel, without what a cause does to a sensor, reads it along the run.
+    """
+    trial = motion.trial
+    speed = reference_shaft(motion)[0]
+    largest = float(np.max(np.abs(speed), initial=0.0))
+    found = np.full(trial.samples, np.nan)
+    if not largest > 0.0:
+        return found
+    plain = {channel.name: channel for channel in trial.scene.network().channels}
+    moment = motion.moment()
+    for column in sorted(trial.columns, key=lambda name: trial.measured[name].total):
+        item = trial.measured[column]
+        channel = plain.get(item.channel)
+        if channel is None or channel.unit != "rad/s" or item.offset > 0.0:
+            continue
+        try:
+            reading = np.broadcast_to(np.asarray(channel.read(moment), float), speed.shape)
+        except KeyError:
+            continue  # it reads a state that the network of the run has not
+        for sense in (1.0, -1.0):
+            if float(np.max(np.abs(sense * reading - speed))) <= SAME * largest:
+                return np.asarray(sense * trial.columns[column], float)
+    return found
 
 
 def _binned(
-    over: str, unit: str, stretches: Sequence[_Stretch], value: Callable[[_Stretch], FloatArray], edges: FloatArray
+    over: str, of: str, unit: str, stretches: Sequence[_Stretch], value: Callable[[_Stretch], FloatArray], edges: FloatArray
 ) -> Iterator[DomainBin]:
     count, before, after = (np.zeros(len(edges) - 1) for _ in range(3))
     for item in stretches:
@@ -113,13 +158,12 @@ def _binned(
         before += np.bincount(at, (item.before**2).sum(axis=0), minlength=len(count))
         after += np.bincount(at, (item.after**2).sum(axis=0), minlength=len(count))
     for k in np.flatnonzero(count):
-        yield _bin(over, unit, edges[k], edges[k + 1], before[k], after[k], count[k])
+        yield _bin(over, of, unit, edges[k], edges[k + 1], before[k], after[k], count[k])
 
 
-def _bin(over: str, unit: str, low: float, high: float, before: float, after: float, count: float) -> DomainBin:
-    return DomainBin(
-        over=over, unit=unit, low=float(low), high=float(high), excess=before / count - 1.0, after=after / count - 1.0, samples=int(count)
-    )
+def _bin(over: str, of: str, unit: str, low: float, high: float, before: float, after: float, count: float) -> DomainBin:
+    excess, left = before / count - 1.0, after / count - 1.0
+    return DomainBin(over=over, of=of, unit=unit, low=float(low), high=float(high), excess=excess, after=left, samples=int(count))
 
 
 def _frequencies(stretches: Sequence[_Stretch]) -> Iterator[DomainBin]:
@@ -139,14 +183,14 @@ def _frequencies(stretches: Sequence[_Stretch]) -> Iterator[DomainBin]:
             total += np.bincount(at, np.sum(np.abs(windowed(rows, window, bins)) ** 2, axis=(0, 1)), minlength=len(count))
         count += np.bincount(at, minlength=len(count)) * float(item.used.sum()) / bins
     for k in np.flatnonzero(count):
-        yield _bin("frequency", "rad/s", edges[k], edges[k + 1], before[k], after[k], count[k])
+        yield _bin("frequency", "", "rad/s", edges[k], edges[k + 1], before[k], after[k], count[k])
 
 
 def _window(item: _Stretch) -> int:
     return min(WINDOW, len(item.times) // 4 // 2 * 2)
 
 
-def _orders(stretches: Sequence[_Stretch]) -> Iterator[DomainBin]:
+def _orders(shaft: str, stretches: Sequence[_Stretch]) -> Iterator[DomainBin]:
     """Below half an order, then orders 1, 2, ... of the reference shaft, each with what lies up to half an order beside it."""
     grid = STEP * ORDERS + STEP // 2
     count, before, after = (np.zeros(grid) for _ in range(3))
@@ -175,7 +219,8 @@ def _orders(stretches: Sequence[_Stretch]) -> Iterator[DomainBin]:
     for order in range(ORDERS + 1):
         near = np.arange(max(1, STEP * order - STEP // 2), STEP * order + STEP // 2)
         if count[near].sum() > 0.0:
-            yield _bin("order", "1", max(order - 0.5, 0.0), order + 0.5, before[near].sum(), after[near].sum(), count[near].sum())
+            energies = (float(total[near].sum()) for total in (before, after, count))
+            yield _bin("order", shaft, "1", max(order - 0.5, 0.0), order + 0.5, *energies)
 
 
 def concentrated(bins: Sequence[DomainBin]) -> tuple[str, ...]:

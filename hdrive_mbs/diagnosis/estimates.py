@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 
 import numpy as np
 
+from hdrive_mbs.diagnosis.acting_through import idle_without
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.result import Estimate
 from hdrive_mbs.diagnosis.unknowns import Factor, Shape, Vector
@@ -44,7 +46,10 @@ def nominal_estimates(fitted: Fitted, scene: Scene) -> tuple[Estimate, ...]:
 
 
 def effect_estimates(fitted: Fitted, improved: Scene, name: str) -> tuple[Estimate, ...]:
-    """Searched fields of an added effect."""
+    """Searched fields of an added effect.
+
+    A phase whose amplitude may be zero is not identifiable, nor is a field that acts through sizes alone that may be.
+    """
     covariance = fitted.covariance
     known = improved.parameters()
     found: list[Estimate] = []
@@ -63,7 +68,7 @@ def effect_estimates(fitted: Fitted, improved: Scene, name: str) -> tuple[Estima
                 part_error = error / value
                 low, high = value * math.exp(-WIDTH * part_error), value * math.exp(WIDTH * part_error)
             elif isinstance(unknown, Vector):
-                sure = error < (0.5 * abs(value) if path == unknown.path else 1.0)
+                sure = error < 0.5 * abs(value) if path == unknown.path else error < 1.0 and found[-1].identifiable
             elif unknown.precision == 0.0:
                 sure = error < 0.5 * abs(value)
             found.append(
@@ -77,7 +82,15 @@ def effect_estimates(fitted: Fitted, improved: Scene, name: str) -> tuple[Estima
                     identifiable=sure,
                 )
             )
-    return tuple(found)
+    return _without_idle(found, improved, name)
+
+
+def _without_idle(found: Sequence[Estimate], improved: Scene, name: str) -> tuple[Estimate, ...]:
+    """Fields that are not felt without sizes which may be zero, as not identifiable."""
+    sizes = {item.name: max(item.low, item.high, key=abs) for item in found if not item.identifiable and item.low <= 0.0 <= item.high}
+    rest = [item.name for item in found if item.identifiable]
+    idle = idle_without(improved, name, rest, sizes) if sizes and rest else frozenset()
+    return tuple(dataclasses.replace(item, identifiable=item.identifiable and item.name not in idle) for item in found)
 
 
 def _slopes(unknown: object, z: Sequence[float]) -> dict[str, np.ndarray[tuple[int], np.dtype[np.float64]]]:

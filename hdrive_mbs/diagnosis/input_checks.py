@@ -6,6 +6,7 @@ What is wrong with a record alone (gaps, saturated or stuck channels, contradict
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -21,6 +22,7 @@ from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import ParameterError, RecordError, UnitError, unknown_place
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.quantities import Described, Quantity
+from hdrive_mbs.records.measurement import Measurement
 from hdrive_mbs.records.record import Record
 
 FloatArray = npt.NDArray[np.float64]
@@ -31,6 +33,8 @@ MOVES = 10.0
 """Standard deviations of its noise by which a column has to vary somewhere, or nothing was excited."""
 START, SHARE = 20.0, 0.1
 """A record does not start like the scene where a speed differs by that many standard deviations and that share of its range."""
+ALIKE = 0.7
+"""Likeness of two names (difflib) from which one may have been meant by the other."""
 FIRST = 16
 """Samples that make up the start."""
 
@@ -47,6 +51,9 @@ def check_records(bench: Bench, records: Sequence[Record]) -> None:
         raise ParameterError(f"Two records are named {twice[0]!r}; give each its own name, like record.replacing(name='...').")
     for record in records:
         record.checked()
+        for name in bench.measured:
+            if name in record.channels:
+                _check_measured(bench, record, name)
         for name in bench.inputs:
             if name in record.channels:
                 _check_input(bench, record, name)
@@ -77,6 +84,22 @@ def _units(network: Network) -> dict[str, str]:
     return units | shaken
 
 
+def _check_measured(bench: Bench, record: Record, name: str) -> None:
+    wanted = _units(bench.scene.network()).get(bench.measured[name].channel)
+    column = record.channels[name]
+    if wanted is not None and column.unit != wanted:
+        raise RecordError(
+            f"Record {record.name!r}: column {name!r} is in {_written(column)}, but {bench.measured[name].channel!r}, which it measures,"
+            f" is in {wanted}. Correct the unit when reading: units={{{name!r}: ...}}."
+        )
+
+
+def _written(column: Measurement) -> str:
+    """Unit of a column as it was written, with what became of it."""
+    shown = column.unit if column.unit != "1" else "no unit (1)"
+    return shown if column.given in ("", column.unit) else f"{column.given!r}, which is read as {shown}"
+
+
 def _check_input(bench: Bench, record: Record, name: str) -> None:
     values = record.channels[name].values
     bad = ~np.isfinite(values)
@@ -88,10 +111,10 @@ def _check_input(bench: Bench, record: Record, name: str) -> None:
         )
     item = bench.inputs[name]
     unit = _unit_of_law(item.law((0.0, 1.0), (0.25, 0.75)), (0.25, 0.75))
-    given = record.channels[name].unit
-    if unit and given != unit:
+    column = record.channels[name]
+    if unit and column.unit != unit:
         raise UnitError(
-            f"Record {record.name!r}: column {name!r} is in {given if given != '1' else 'no unit (1)'}, but {item.path}, which it drives,"
+            f"Record {record.name!r}: column {name!r} is in {_written(column)}, but {item.path}, which it drives,"
             f" is in {unit}. Correct the unit when reading: units={{{name!r}: ...}}, or take another column."
         )
 
@@ -132,17 +155,38 @@ def check_trials(simulator: Simulator, factors: Sequence[Factor]) -> None:
             _check_start(trial, column, own[column], units)
 
 
+def not_driven(bench: Bench, records: Sequence[Record], simulator: Simulator, factors: Sequence[Factor]) -> tuple[str, ...]:
+    """Says so, and what to do, where no column drives the scene and the model stands still while the records move."""
+    if bench.inputs or any(trial.motions for trial in simulator.trials):
+        return ()
+    hypothesis = Hypothesis(factors=tuple(factors))
+    simulated = simulator.columns(hypothesis, np.zeros(hypothesis.size))
+    for trial, own in zip(simulator.trials, simulated, strict=True):
+        if not own or any(_range(own[column]) > MOVES * trial.measured[column].total for column in trial.columns):
+            return ()
+    unused = sorted({name for record in records for name in record.channels if name not in bench.measured})
+    which = repr(unused[0] if unused else "motor_torque")
+    others = f" Columns that are not used: {', '.join(unused)}." if unused else ""
+    return (
+        "No column drives the scene, and the model stands still while the records move: whatever is said below is about that."
+        f" Write a bench() that says which column drives what, with Bench(..., inputs={{{which}: Input(path='motor.characteristic',"
+        f" law=lambda t, v: hm.TorqueHistory(times=t, torques=v))}}), see docs/diagnosis.md.{others}",
+    )
+
+
 def not_compared(bench: Bench, records: Sequence[Record]) -> tuple[str, ...]:
-    """Columns that the bench measures and a record has not, in words."""
+    """Columns that the bench measures and a record has not, in words, with what they may have been called."""
     found = []
+    known = {*bench.measured, *bench.inputs}
     for column in bench.measured:
         without = [record for record in records if column not in record.channels]
         if without:
             where = ", ".join(repr(record.name) for record in without)
-            known = {*bench.measured, *bench.inputs}
             others = sorted({name for record in without for name in record.channels if name not in known})
             unused = f" Columns there that the bench does not know: {', '.join(others)}." if others else ""
-            found.append(f"{column!r}, which the bench measures, was not compared in {where}: no such column there.{unused}")
+            near = difflib.get_close_matches(column, others, 1, ALIKE)
+            meant = f" Did you mean {near[0]!r}? Then name both alike." if near else ""
+            found.append(f"{column!r}, which the bench measures, was not compared in {where}: no such column there.{unused}{meant}")
     return tuple(found)
 
 

@@ -59,7 +59,9 @@ def report_document(diagnosis: Diagnosis, *, series: bool = False) -> dict[str, 
             }
             for item in diagnosis.next_records
         ],
+        "warnings": diagnosis.warnings,
         "notes": diagnosis.notes,
+        "inputs": diagnosis.inputs,
         "improved_scene": _scene(diagnosis.improved),
         "seconds": diagnosis.seconds,
         "versions": diagnosis.versions,

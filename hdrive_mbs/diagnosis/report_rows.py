@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 from hdrive_mbs.diagnosis import sentences
@@ -93,11 +92,20 @@ def before(item: Estimate) -> str:
     return "" if math.isnan(z) else f"{with_unit(item.nominal, item.unit)}, moved {z:+.1f} sigma"
 
 
-def moved_table(diagnosis: Diagnosis) -> Table:
-    """Nominal parameters that the fit moved."""
-    return Table(heads=("moved", "before", "after (95 % interval)", "by", ""), rows=tuple(_moved(diagnosis)), words=5, free=True)
+def parameter_table(diagnosis: Diagnosis, beyond: float = 0.0) -> Table:
+    """Nominal parameters before and after the fit, the furthest first.
 
-
-def _moved(diagnosis: Diagnosis) -> Iterator[tuple[str, ...]]:
-    for item, z in sentences.moved_parameters(diagnosis):
-        yield item.name, with_unit(item.nominal, item.unit), sentences.estimate_text(item), f"{z:+.1f} sigma", item.doc
+    beyond : only those that moved further [standard deviations of their tolerance]; all at 0
+    """
+    rows = tuple(
+        (
+            item.name,
+            with_unit(item.nominal, item.unit),
+            sentences.estimate_text(item).replace(" from these records", ""),
+            "-" if math.isnan(z) else f"{z:+.1f} sigma",
+            item.doc,
+        )
+        for item, z in sentences.by_distance(diagnosis)
+        if not beyond or abs(z) > beyond
+    )
+    return Table(heads=("parameter", "nominal", "refitted (95 % interval)", "moved", ""), rows=rows, words=5, free=True)

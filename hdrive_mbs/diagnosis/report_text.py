@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from hdrive_mbs.diagnosis import report_rows, sentences
+from hdrive_mbs.diagnosis.improved_words import improved_words
 from hdrive_mbs.diagnosis.readable import probability
 from hdrive_mbs.diagnosis.report_rows import Table
 from hdrive_mbs.diagnosis.result import Cause, Diagnosis
@@ -15,6 +16,8 @@ from hdrive_mbs.writing import write_text
 
 WIDTH = 110
 """Columns of the report; only a table with long names is wider."""
+ROWS = 15
+"""Nominal parameters up to which all are listed."""
 
 
 def report_text(diagnosis: Diagnosis) -> str:
@@ -30,13 +33,16 @@ def write_report(diagnosis: Diagnosis, path: str | os.PathLike[str]) -> Path:
 def _lines(diagnosis: Diagnosis) -> Iterator[str]:
     yield from _heading(sentences.title(diagnosis), "=")
     yield ""
+    for text in diagnosis.warnings:
+        yield from _wrapped(f"WARNING: {text}", indent="")
     yield from _wrapped(f"{sentences.verdict(diagnosis)} {sentences.confidence(diagnosis)}", indent="")
-    for text in filter(None, (sentences.ambiguity(diagnosis), sentences.inexact(diagnosis))):
+    for text in filter(
+        None, (sentences.ambiguity(diagnosis), sentences.inexact(diagnosis), sentences.strained(diagnosis), sentences.rest(diagnosis))
+    ):
         yield from _wrapped(text, indent="")
     for cause in diagnosis.causes:
         yield from _cause(cause)
-    where = [sentences.where(place) for place in diagnosis.where[:5]]
-    yield from _section("Where (an unknown signal at one place, no law assumed)", where)
+    yield from _section("Where (an unknown signal at one place, no law assumed)", sentences.where_sentences(diagnosis, 5))
     yield from _gap(diagnosis)
     if diagnosis.ranking:
         table = report_rows.ranking_table(diagnosis)
@@ -44,9 +50,10 @@ def _lines(diagnosis: Diagnosis) -> Iterator[str]:
         yield from _drawn(table)
         yield "  log odds: against the refitted nominal model; fit, held out: mean square of the residual, 1 for noise alone"
     yield from _parameters(diagnosis)
-    yield from _section("Where in the operating range (refitted nominal model)", sentences.domain_sentences(diagnosis.domain))
+    if not sentences.only_noise(diagnosis):
+        yield from _section("Where in the operating range (refitted nominal model)", sentences.domain_sentences(diagnosis.domain))
     yield from _section("Measure next", sentences.next_sentences(diagnosis.next_records))
-    yield from _section("Notes", diagnosis.notes)
+    yield from _section("Notes", (*diagnosis.notes, *improved_words(diagnosis)))
     yield ""
     yield from _wrapped(sentences.made(diagnosis), indent="")
 
@@ -76,11 +83,14 @@ def _parameters(diagnosis: Diagnosis) -> Iterator[str]:
     if not diagnosis.parameters:
         return
     yield from _section("Nominal parameters", [""])
-    table = report_rows.moved_table(diagnosis)
+    short = len(diagnosis.parameters) > ROWS
+    table = report_rows.parameter_table(diagnosis, beyond=sentences.MOVED if short else 0.0)
     if table.rows:
         yield from _drawn(table)
-    if text := sentences.unmoved(diagnosis):
-        yield from _wrapped(text)
+    if short:
+        number = len(diagnosis.parameters) - len(table.rows)
+        yield f"  {number} more moved by less than {sentences.MOVED:g} sigma; diagnosis.json has them all under 'parameters'"
+    yield from _wrapped(sentences.SIGMA)
 
 
 def _section(title: str, lines: Sequence[str]) -> Iterator[str]:

@@ -122,6 +122,7 @@ class DomainBin:
     """Part of the operating range with the misfit of the refitted nominal model there.
 
     over : "speed", "torque", "direction", "order", "frequency" or "time";  low, high : its ends, in unit
+    of : place whose speed, torque, direction or order it is; empty for frequency and time
     excess : mean square minus 1;  samples : number;  after : excess with the claimed cause
     """
 
@@ -132,6 +133,7 @@ class DomainBin:
     excess: float
     after: float
     samples: int
+    of: str = ""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -235,9 +237,11 @@ class Diagnosis:
     indistinguishable : (effect, place) that these records cannot tell from the claim
     ranking : everything that was fitted, most probable first, "none" included
     where : places by latent-force localisation;  gaps : all together first, then by record and column
-    parameters : nominal parameters after the fit;  improved : the scene with the cause, ready to be saved and simulated
+    parameters : nominal parameters after the fit;  improved : the scene with the cause, its inputs as in the bench
     next_records : for a group that cannot be told apart, records that would separate it, best first
-    notes : what a reader has to know (fits that did not converge, verification on the engine, ...)
+    warnings : what a reader has to know before he believes the verdict (a column that was not compared, a scene that nothing drives)
+    notes : what else he has to know (fits that did not converge, verification on the engine, ...)
+    inputs : columns that drive the scene, and the field each of them was put into
     forces, loops, order_maps : for pictures: at the located place, most telling record first
     """
 
@@ -255,6 +259,8 @@ class Diagnosis:
     traces: tuple[Trace, ...] = ()
     next_records: tuple[Separation, ...] = ()
     notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    inputs: Mapping[str, str] = field(default_factory=dict)
     seconds: float = 0.0
     versions: Mapping[str, str] = field(default_factory=dict)
     forces: tuple[LatentForce, ...] = ()

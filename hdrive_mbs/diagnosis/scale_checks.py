@@ -2,16 +2,23 @@
 
 A column y and its simulation s, both without their mean, are compared by least squares: y = c s.  Where they go together and c
 is 180/pi, 1000 or the like or one over it, the column was read in the wrong unit: gains of sensors are some per cent off.
+
+Where a cause is missing the model may do something else, and then a column is held against another one: how far two places turn
+against each other is a matter of ratios, which friction does not change.  What that shows is no refusal but a warning.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
+from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import RecordError
 from hdrive_mbs.units import factor
 
@@ -29,6 +36,10 @@ OTHERS = {
 """Unit of a scene -> units that a log may be in instead."""
 CLEAR = 0.98
 """Squared correlation from which a factor is believed."""
+LIKELY = 0.9
+"""The same from which one is worth a warning."""
+TIED = 0.999
+"""Squared correlation of two columns of the model from which one follows from the other."""
 NEAR = 0.1
 """Relative deviation from a known factor: a nominal model is wrong by some per cent."""
 
@@ -47,9 +58,79 @@ def check_scale(trial: Trial, column: str, simulated: FloatArray, unit: str) -> 
     if causes:
         raise RecordError(
             f"Record {trial.name!r}: {column!r} is {both / power:.4g} times what {trial.measured[column].channel} of the nominal scene"
-            f" does, as if {' or '.join(causes)}. Give the unit of the numbers when reading, units={{{column!r}: ...}} (--unit"
-            f" {column}=...), or the column the channel that it measures."
+            f" does, as if {' or '.join(causes)}. Give the unit of the numbers when reading, units={{{column!r}: ...}},"
+            " or the column the channel that it measures."
         )
+
+
+def looks_scaled(simulator: Simulator, factors: Sequence[Factor]) -> tuple[str, ...]:
+    """Columns that look as if they were in another unit, by their simulation or by another column, in words; one line for each."""
+    hypothesis = Hypothesis(factors=tuple(factors))
+    simulated = simulator.columns(hypothesis, np.zeros(hypothesis.size))
+    found: dict[str, str] = {}
+    for trial, own in zip(simulator.trials, simulated, strict=True):
+        if not own:
+            continue
+        units = {channel.name: channel.unit for channel in trial.scene.network().channels}
+        of = {column: units.get(item.channel, "") for column, item in trial.measured.items()}
+        for column, why in (*_by_itself(trial, own, of), *_by_another(trial, own, of)):
+            found.setdefault(
+                column, f"Record {trial.name!r}: column {column!r} looks {why} Give its unit when reading: --unit {column}=..."
+            )
+    return tuple(found.values())
+
+
+def _by_itself(trial: Trial, simulated: Mapping[str, FloatArray], units: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    for column, values in trial.columns.items():
+        ratio = _ratio(values, simulated[column], LIKELY) if units[column] in OTHERS else None
+        causes = list(_causes(ratio, units[column])) if ratio is not None else []
+        if causes:
+            yield column, f"as if {' or '.join(causes)}: it is {ratio:.3g} times what the nominal model does."
+
+
+def _by_another(trial: Trial, simulated: Mapping[str, FloatArray], units: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Angles, or speeds summed up, of which one follows from the other in the model."""
+    turning = [column for column in trial.columns if units[column] in ("rad", "rad/s") and trial.measured[column].offset == 0.0]
+    for k, first in enumerate(turning):
+        for second in turning[k + 1 :]:
+            measured, model = (
+                [_angle(of[name], units[name], trial.every) for name in (first, second)] for of in (trial.columns, simulated)
+            )
+            real, nominal = _ratio(measured[1], measured[0], CLEAR), _ratio(model[1], model[0], TIED)
+            if real is None or nominal is None or nominal == 0.0:
+                continue
+            off = [abs(math.log(float(np.std(y)) / float(np.std(s)))) for y, s in zip(measured, model, strict=True)]
+            column, other, ratio = (second, first, real / nominal) if off[1] >= off[0] else (first, second, nominal / real)
+            causes = list(_causes(ratio, units[column]))
+            if causes:
+                yield column, f"as if {' or '.join(causes)}: beside {other!r} it moves {ratio:.3g} times as much as in the nominal model."
+
+
+def _angle(values: FloatArray, unit: str, every: float) -> FloatArray:
+    """An angle, or the one that a speed sums up to, without its straight line, in which an unknown start or drift would show [rad]."""
+    finite = np.where(np.isfinite(values), values, np.nanmean(values) if np.isfinite(values).any() else 0.0)
+    angle = np.cumsum(finite) * every if unit == "rad/s" else finite
+    at = np.arange(len(angle))
+    return np.asarray(angle - np.polyval(np.polyfit(at, angle, 1), at))
+
+
+def _ratio(values: FloatArray, reference: FloatArray, together: float) -> float | None:
+    """Ratio through zero of what both leave of their means, by least absolute differences; None where they do not go together.
+
+    together : least squared correlation
+    """
+    there = np.isfinite(values) & np.isfinite(reference)
+    if there.sum() < 2:
+        return None
+    y, s = (item[there] - np.mean(item[there]) for item in (values, reference))
+    power, own, both = float(s @ s), float(y @ y), float(y @ s)
+    if power == 0.0 or own == 0.0 or both * both < together * power * own:
+        return None
+    moves = s != 0.0
+    ratios, weights = y[moves] / s[moves], np.abs(s[moves])
+    order = np.argsort(ratios)
+    passed = np.cumsum(weights[order])
+    return float(ratios[order][np.searchsorted(passed, 0.5 * passed[-1])])
 
 
 def _causes(ratio: float, unit: str) -> Iterator[str]:

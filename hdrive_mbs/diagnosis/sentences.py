@@ -14,6 +14,22 @@ EVEN = 1.5
 """A bin with less than this many times its share of the samples stands out from nothing."""
 REST = 1.26
 """Times the noise (root mean square) from which what a claim leaves is spoken of: a mean square of FITS in verdict.py."""
+ALL = 0.9
+"""Share of the gap from which a place is said to explain nearly all of it."""
+WHY = (
+    "A signal at a place may be as large and as quick as it takes, so several can explain nearly all of the gap:"
+    " the likelier is the one that needs less signal for it."
+)
+LEFT = (
+    "What is left is noise by the verdict: no place and no part of the operating range is named,"
+    " for those that fit noise best mean nothing (the JSON has them)."
+)
+FAR = 3.0
+"""Standard deviations of its tolerance beyond which a parameter that is not claimed is told beside the verdict."""
+SIGMA = (
+    "sigma: the tolerance given for a parameter, a standard deviation of its logarithm;"
+    " a value known to 10 % that halves has moved by ln(0.5)/0.1 = -6.9 sigma"
+)
 MOVED = 1.0
 """Standard deviations of its tolerance from which a parameter is said to have moved."""
 
@@ -107,10 +123,32 @@ def where(place: Place) -> str:
     return text + (f"; these records cannot tell it from {listed(place.tied, 'or')}" if place.tied else "")
 
 
+def where_sentences(diagnosis: Diagnosis, top: int | None = None) -> tuple[str, ...]:
+    """Places of the gap, the first ones, and why one of several that explain the same wins; none where only noise is left."""
+    if only_noise(diagnosis) or not diagnosis.where:
+        return ()
+    shown = tuple(where(place) for place in diagnosis.where[:top])
+    full = [place for place in diagnosis.where[:top] if place.share >= ALL and not place.parameter]
+    return (*shown, WHY) if len(full) > 1 else shown
+
+
+def only_noise(diagnosis: Diagnosis) -> bool:
+    """Whether the verdict is that nothing is left to be put anywhere: then neither places nor operating range are told."""
+    return diagnosis.verdict == "none"
+
+
+def rest(diagnosis: Diagnosis) -> str:
+    """In place of them, if they were looked for: that what is left is noise."""
+    return LEFT if only_noise(diagnosis) and (diagnosis.where or diagnosis.domain) else ""
+
+
 def explaining(place: Place) -> str:
     """What a place would explain, and how."""
     if place.parameter:
-        return f"{named(place.parameter)} off beyond its tolerance explains the gap better than an unknown signal there"
+        return (
+            f"in place of an unknown signal there {named(place.parameter)} off beyond its tolerance would do, and with less;"
+            " this compares the two alone and is not the verdict"
+        )
     return f"an unknown signal there explains {percent(place.share)} of the gap"
 
 
@@ -129,9 +167,28 @@ def moved_parameters(diagnosis: Diagnosis) -> list[tuple[Estimate, float]]:
     return sorted(((item, z) for item, z in pairs if abs(z) > MOVED), key=lambda pair: -abs(pair[1]))
 
 
+def by_distance(diagnosis: Diagnosis) -> list[tuple[Estimate, float]]:
+    """All nominal parameters and how far they went, the furthest first, those without a tolerance last."""
+    pairs = [(item, moved(item)) for item in diagnosis.parameters]
+    return sorted(pairs, key=lambda pair: -abs(pair[1]) if math.isfinite(pair[1]) else math.inf)
+
+
+def strained(diagnosis: Diagnosis) -> str:
+    """Parameters far outside their tolerance that nothing claims; empty where there is none."""
+    claimed = {item.name for cause in diagnosis.causes if cause.effect == "parameter" for item in cause.parameters}
+    far = [(item, z) for item, z in by_distance(diagnosis) if abs(z) > FAR and item.name not in claimed]
+    if not far:
+        return ""
+    told = listed([f"{named(item.name)} by {z:+.1f} sigma" for item, z in far])
+    return (
+        f"The fit moved {told} of {'its' if len(far) == 1 else 'their'} tolerance, which the verdict does not claim:"
+        " a data sheet may be wrong there, or a cause that is missing bends it."
+    )
+
+
 def domain_sentences(bins: Sequence[DomainBin]) -> tuple[str, ...]:
     """Where in the operating range the misfit of the refitted nominal model lies, one sentence for each quantity."""
-    return tuple(_domain(over, [item for item in bins if item.over == over]) for over in dict.fromkeys(item.over for item in bins))
+    return tuple(_domain([item for item in bins if item.over == over]) for over in dict.fromkeys(item.over for item in bins))
 
 
 def bin_name(item: DomainBin) -> str:
@@ -148,7 +205,15 @@ def bin_name(item: DomainBin) -> str:
     return f"{item.low:.3g} to {item.high:.3g}{unit}"
 
 
-def _domain(over: str, bins: Sequence[DomainBin]) -> str:
+def over_name(item: DomainBin) -> str:
+    """Of what a bin is a range, with the place: ``motor speed``, ``direction of motor``, ``time``."""
+    if not item.of:
+        return item.over
+    return f"{named(item.of)} {item.over}" if item.over in ("speed", "torque") else f"{item.over} of {named(item.of)}"
+
+
+def _domain(bins: Sequence[DomainBin]) -> str:
+    over = over_name(bins[0])
     energies = [max(item.excess, 0.0) * item.samples if math.isfinite(item.excess) else 0.0 for item in bins]
     total, samples = sum(energies), sum(item.samples for item in bins)
     if not total > 0.0 or not samples:
@@ -194,13 +259,6 @@ def title(diagnosis: Diagnosis) -> str:
     """What was diagnosed, by what."""
     number = len(diagnosis.records)
     return f"Diagnosis of {diagnosis.scene.name!r} by {number} record{'s' if number != 1 else ''}: {listed(diagnosis.records)}"
-
-
-def unmoved(diagnosis: Diagnosis) -> str:
-    """Names of the nominal parameters that stayed within their tolerance; empty if there is none."""
-    moved_ones = [item for item, _ in moved_parameters(diagnosis)]
-    still = [item.name for item in diagnosis.parameters if all(item is not other for other in moved_ones)]
-    return f"Moved by less than {MOVED:g} sigma of their tolerance: {listed(still)}." if still else ""
 
 
 def made(diagnosis: Diagnosis) -> str:

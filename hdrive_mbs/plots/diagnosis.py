@@ -45,11 +45,12 @@ def plot_diagnosis(result: Diagnosis, ax: Axes | None = None) -> Axes:
 
 
 def _panels(result: Diagnosis) -> tuple[tuple[str, float, bool], ...]:
+    placed = not sentences.only_noise(result)
     return (
         ("gap", 2.1, bool(result.gaps)),
         ("ranking", 0.9 + 0.3 * min(len(result.ranking), 6), bool(result.ranking)),
-        ("places", 0.9 + 0.3 * min(len(result.where), 4), bool(result.where)),
-        ("domain", 2.0, bool(result.domain) and not result.where),
+        ("places", 0.9 + 0.3 * min(len(result.where), 4), placed and bool(result.where)),
+        ("domain", 2.0, placed and bool(result.domain) and not result.where),
         ("traces", 2.6, bool(result.traces)),
     )
 
@@ -66,7 +67,7 @@ def _draw(name: str, result: Diagnosis, ax: Axes) -> None:
     else:
         worst = worst_first(result)[0]
         plot_traces(result, ax, record=worst.record, column=worst.column, residuals=True)
-        ax.set_ylabel(f"{readable(worst.column)} of\n{readable(worst.record)}:\n{ax.get_ylabel()}")
+        ax.set_xlabel(f"time [s] ({readable(worst.column)}, record {worst.record!r})")
 
 
 def worst_first(result: Diagnosis) -> list[Trace]:

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 
 from hdrive_mbs.diagnosis.result import Diagnosis, DomainBin
-from hdrive_mbs.diagnosis.sentences import bin_name
+from hdrive_mbs.diagnosis.sentences import bin_name, over_name
 from hdrive_mbs.errors import unknown_place
 from hdrive_mbs.plots.diagnosis_look import EFFECT, REFIT, WIDTH, drawn_unit, needed
 from hdrive_mbs.plots.look import house_look, legend_above, new_figure, readable, unit_text
@@ -104,7 +104,7 @@ def _bars(ax: Axes, bins: list[DomainBin], claimed: bool) -> None:
     ax.yaxis.set_major_formatter("{x:g}")
     tallest = max([float(value) for value in (*before, *after) if math.isfinite(value)], default=1.0)
     ax.set_ylim(LEAST, 2.0 * max(tallest, 1.0))
-    over, unit = bins[0].over, bins[0].unit
+    over, unit, name = bins[0].over, bins[0].unit, over_name(bins[0])
     ends = [item.low for item in bins] + [bins[-1].high]
     touching = all(a.high == b.low for a, b in itertools.pairwise(bins)) and all(map(math.isfinite, ends)) and len(bins) > 2
     if over == "order":
@@ -115,7 +115,7 @@ def _bars(ax: Axes, bins: list[DomainBin], claimed: bool) -> None:
         ax.set_xticks((np.arange(len(ends)) - 0.5)[::every], [f"{end:.3g}" for end in ends[::every]])
     else:
         ax.set_xticks(at, ["\n".join(textwrap.wrap(bin_name(item).removesuffix(f" {unit}"), 16)) for item in bins])
-    ax.set_xlabel(over if unit in ("", "1") or over == "direction" else f"{over} [{unit_text(unit)}]")
+    ax.set_xlabel(name if unit in ("", "1") or over == "direction" else f"{name} [{unit_text(unit)}]")
     ax.set_ylabel("mean square\nabove noise")
     ax.set_xlim(-0.6, len(bins) - 0.4)
     ax.grid(False, axis="x")

@@ -18,7 +18,8 @@ FloatArray = npt.NDArray[np.float64]
 WIDTH = 5.6
 """Of a picture [inch]: its text can still be read across a phone."""
 
-MEASURED: dict[str, Any] = {"color": "#000000", "linestyle": "-", "linewidth": 0.9}
+MEASURED: dict[str, Any] = {"color": "#A8A8A8", "linestyle": "-", "linewidth": 3.6, "solid_capstyle": "round"}
+"""Pale and wide, below the models: one that follows it does not hide it."""
 NOMINAL: dict[str, Any] = {"color": GREY, "linestyle": ":", "linewidth": 1.3}
 REFIT: dict[str, Any] = {"color": COLOURS[1], "linestyle": "--", "linewidth": 1.2}
 EFFECT: dict[str, Any] = {"color": COLOURS[0], "linestyle": "-", "linewidth": 1.2}

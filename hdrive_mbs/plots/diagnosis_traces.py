@@ -128,7 +128,7 @@ def _residuals(ax: Axes, trace: Trace, claimed: bool) -> None:
         ax.set_yticks([*-decades[::-1], 0.0, *decades], [f"{tick:g}" for tick in (*-decades[::-1], 0.0, *decades)])
         ax.minorticks_off()
     ax.axhspan(-2.0, 2.0, color=GREY, alpha=0.18, linewidth=0.0)
-    ax.set_ylabel("measured minus\nsimulated [noise]")
+    ax.set_ylabel("measured minus simulated\n[standard deviations\nof the noise]")
     ax.margins(x=0.0)
 
 
@@ -142,5 +142,5 @@ def _against(ax: Axes, trace: Trace, over: str, claimed: bool) -> None:
         ax.fill_between(middle, low, high, color=look["color"], alpha=0.15, linewidth=0.0)
         ax.plot(middle, mean, label=STEPS["refit" if look is REFIT else "effect"], **{**look, "linewidth": 1.8})
     ax.set_xlabel(f"{over} [{unit}]")
-    ax.set_ylabel("residual\n[noise]")
+    ax.set_ylabel("residual\n[standard deviations\nof the noise]")
     ax.margins(x=0.01)

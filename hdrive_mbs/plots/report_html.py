@@ -8,6 +8,7 @@ from html import escape
 from pathlib import Path
 
 from hdrive_mbs.diagnosis import report_rows, sentences
+from hdrive_mbs.diagnosis.improved_words import improved_words
 from hdrive_mbs.diagnosis.readable import digits, named, probability
 from hdrive_mbs.diagnosis.result import Diagnosis, Trace
 from hdrive_mbs.plots.diagnosis import worst_first
@@ -37,18 +38,21 @@ def write_report_html(diagnosis: Diagnosis, path: str | os.PathLike[str]) -> Pat
 
 def report_body(diagnosis: Diagnosis) -> Iterator[str]:
     """Everything below the title: verdict, causes, gap, curves, place, ranking, parameters; headings of the second level."""
-    said = (sentences.verdict, sentences.confidence, sentences.ambiguity, sentences.inexact)
+    said = (sentences.verdict, sentences.confidence, sentences.ambiguity, sentences.inexact, sentences.strained, sentences.rest)
+    if diagnosis.warnings:
+        yield f'<div class="verdict unknown">{"".join(paragraphs(f"Warning: {text}" for text in diagnosis.warnings))}</div>'
     kind = escape(diagnosis.verdict, quote=True)
     yield f'<div class="verdict {kind}">{"".join(paragraphs(text for say in said if (text := say(diagnosis))))}</div>'
     yield from _causes(diagnosis)
     yield from _gap(diagnosis)
     yield from _curves(diagnosis)
-    yield from _where(diagnosis)
-    yield from _domain(diagnosis)
+    if not sentences.only_noise(diagnosis):
+        yield from _where(diagnosis)
+        yield from _domain(diagnosis)
     yield from _ranking(diagnosis)
     yield from _parameters(diagnosis)
     yield from bullets("Measure next", sentences.next_sentences(diagnosis.next_records))
-    yield from bullets("Notes", diagnosis.notes)
+    yield from bullets("Notes", (*diagnosis.notes, *improved_words(diagnosis)))
     yield f"<footer>{escape(sentences.made(diagnosis))}</footer>"
 
 
@@ -116,6 +120,7 @@ def _where(diagnosis: Diagnosis) -> Iterator[str]:
         first = diagnosis.where[0]
         text = f"Bars: {sentences.where(first)}."
         yield figure(plot_places(diagnosis), text, "An unknown signal at one place, no law assumed.")
+        yield from paragraphs(sentences.where_sentences(diagnosis, 5))
     for force in diagnosis.forces:
         axes = plot_force(diagnosis, at=force.at, way=force.way, record=force.record)
         text = f"Estimated unknown signal at {force.at} {force.way} during record {force.record}, over time and against what varies there."
@@ -156,5 +161,4 @@ def _parameters(diagnosis: Diagnosis) -> Iterator[str]:
     if not diagnosis.parameters:
         return
     yield "<h2>Nominal parameters</h2>"
-    yield from table_of(report_rows.moved_table(diagnosis), "Moved by the fit; sigma is the tolerance they had before")
-    yield from paragraphs(text for text in [sentences.unmoved(diagnosis)] if text)
+    yield from table_of(report_rows.parameter_table(diagnosis), f"Before and after the fit; {sentences.SIGMA}")

@@ -22,6 +22,7 @@ class Measurement:
     quantity : channel of the scene that it measures, like "motor.speed"; None if not said
     noise : standard deviation of white noise [unit], before rounding; None if not known
     resolution : step of rounding [unit]; None if not known
+    given : unit as it was written in the file or by the caller; empty if not known
     """
 
     name: str
@@ -30,6 +31,7 @@ class Measurement:
     quantity: str | None = None
     noise: float | None = None
     resolution: float | None = None
+    given: str = ""
 
     def __post_init__(self) -> None:
         values = np.array(self.values, dtype=float)

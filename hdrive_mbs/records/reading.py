@@ -257,5 +257,6 @@ def _measured(columns: Sequence[Column], request: Request) -> list[Measurement]:
                 f"{error} Give another with units={{{column.name!r}: '...'}}, or leave the channel out with channels=[...]."
             ) from None
         values = scale.apply(np.asarray(column.values, dtype=float))
-        made.append(Measurement(name=column.name, unit=scale.unit, values=values, quantity=request.quantity(column.name)))
+        quantity = request.quantity(column.name)
+        made.append(Measurement(name=column.name, unit=scale.unit, values=values, quantity=quantity, given=unit.strip()))
     return made

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import functools
 import re
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ import numpy as np
 
 from hdrive_mbs.errors import UnitError
 from hdrive_mbs.signals import FloatArray
-from hdrive_mbs.units import base_powers, factor
+from hdrive_mbs.units import base_powers, factor, prefix_and_unit
 
 LONGEST = 200
 """Characters of a unit."""
@@ -34,6 +35,19 @@ AMBIGUOUS = {
     "c": "'C' is the coulomb; write 'degC' for a temperature or 'coulomb'",
 }
 """Texts that have more than one meaning in records, in lower case."""
+
+PREFIXED = {
+    **dict.fromkeys(("kilo", "mega", "giga", "milli", "micro", "nano", "pico", "centi"), (
+        "meter", "gram", "second", "newton", "pascal", "radian", "degree", "hertz", "joule", "watt", "watt_hour", "volt", "ampere",
+        "ohm", "henry", "farad", "coulomb", "tesla", "weber", "kelvin", "bar", "force_gram", "revolutions_per_minute", "liter", "strain",
+        "standard_gravity",
+    )),
+    "hecto": ("pascal",),
+    "deci": ("meter", "newton"),
+}  # fmt: skip
+"""Prefix -> units that bear it in records: pint knows the decigrain too, but whoever writes 'dgr' means 'deg'."""
+USUAL = ("deg", "rad", "mrad", "urad", "arcmin", "rpm", "mm", "um", "cm", "ms", "us", "kN", "mN", "kg", "bar", "kPa", "MPa", "mA", "mV")
+"""Units that a slip may have meant."""
 
 _SPELLINGS = (
     (re.compile(r"[₂²]"), "^2"),
@@ -92,6 +106,12 @@ def conversion(text: str, where: str) -> Conversion:
     spelled = given
     for pattern, replacement in _SPELLINGS:
         spelled = pattern.sub(replacement, spelled)
+    for name in re.findall(r"[^\W\d]+", spelled):
+        prefix, base = prefix_and_unit(name)
+        if prefix and base not in PREFIXED.get(prefix, ()):
+            near = difflib.get_close_matches(name, USUAL, 1, 0.6)
+            meant = f" Did you mean {near[0]!r}?" if near else ""
+            raise UnitError(f"{where}: unit {text!r} would be a {prefix}{base}, in which nobody records.{meant}")
     unit = _si_of(spelled, where)
     if unit is None:
         raise UnitError(

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import dataclasses
 import gc
 import itertools
 import json
 import multiprocessing
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -20,7 +22,7 @@ from typer.testing import CliRunner
 import hdrive_mbs as hm
 from hdrive_mbs.cli.main import app, main
 from hdrive_mbs.cli.python_file import own_effects
-from hdrive_mbs.cli.stages import stage_bars
+from hdrive_mbs.cli.stages import plain_lines, stage_bars
 from hdrive_mbs.diagnosis import diagnose as search
 from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.diagnosis.candidates import known_effects
@@ -138,6 +140,35 @@ def test_report_is_printed_and_everything_is_written(asked: list[dict[str, Any]]
     assert isinstance(asked[0]["bench"], Bench)
     assert asked[0]["workers"] == 2
     assert asked[0]["candidates"] is None
+
+
+def test_the_improved_scene_says_whose_inputs_it_holds_and_runs_with_the_file_of_its_effect(
+    asked: list[dict[str, Any]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = written(tmp_path, SEAL_DRAG, "seal")
+    kind = own_effects(Path(own))[0]
+    improved = drive_bench.build().with_effect(kind(scale=0.05), at="motor", name="seal_drag")
+    answer = dataclasses.replace(SAMPLES["without_pictures"](), improved=improved, inputs={"torque\n[x]": "motor.characteristic"})
+    monkeypatch.setattr(search, "diagnose", lambda *given, **options: answer)
+    out = tmp_path / "out"
+    assert invoke(written(tmp_path, BENCH), "--records", record(tmp_path, "a.csv"), "--out", str(out)).exit_code == 0
+    head = [line for line in (out / "improved.toml").read_text("utf-8").splitlines() if line.startswith("#")]
+    assert "holds motor.characteristic (driven by column 'torque" in head[0]
+    assert "as the bench file has it, not as in a record" in head[0]
+    assert head[1].endswith(f"hdrive-mbs run improved.toml --effects {Path(own).name}")
+    assert "as the bench file has it" in " ".join((out / "diagnosis.txt").read_text("utf-8").split())
+    assert load_scene(out / "improved.toml", types=[kind]) == improved
+    script = "import sys; from hdrive_mbs.cli.main import main; sys.argv[0] = 'hdrive-mbs'; main()"
+    words = ("modes", str(out / "improved.toml"))
+    without = subprocess.run([sys.executable, "-c", script, *words], capture_output=True, text=True, timeout=PATIENCE, check=False)
+    assert without.returncode == 2
+    assert "No type 'SealDrag'. effects.seal_drag: it can be one of " in without.stderr
+    assert "--effects FILE.py" in without.stderr
+    assert len(without.stderr) < 600
+    again = subprocess.run(
+        [sys.executable, "-c", script, *words, "--effects", own], capture_output=True, text=True, timeout=PATIENCE, check=False
+    )
+    assert again.returncode == 0, again.stderr
 
 
 def test_json_on_stdout_is_all_that_is_printed(asked: list[dict[str, Any]], tmp_path: Path) -> None:
@@ -312,6 +343,18 @@ def test_stages_are_shown_on_a_terminal_only() -> None:
         report("screening", 1, 4)
         report("screening", 4, 4)
         report("joint fits", 0, 0)  # a stage without work divides nothing by nothing
+
+
+def test_without_a_terminal_a_plain_line_comes_every_half_minute(capsys: pytest.CaptureFixture[str]) -> None:
+    times = iter((100.0, 101.0, 129.0, 131.0, 140.0, 175.0))
+    report = plain_lines(clock=lambda: next(times))
+    for stage, done, total in (("first", 1, 4), ("first", 2, 4), ("first", 3, 4), ("second", 0, 1), ("third", 0, 1)):
+        report(stage, done, total)
+    assert capsys.readouterr().err == "31 s: first, 3 of 4\n75 s: third\n"
+    with stage_bars() as shown:  # stderr is no terminal here
+        assert shown is not None
+        shown("first", 1, 4)
+    assert capsys.readouterr().err == ""
 
 
 def test_tests_leave_no_effect_behind() -> None:

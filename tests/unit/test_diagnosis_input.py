@@ -16,10 +16,11 @@ from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
 from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.diagnose import diagnose, factors_of
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
-from hdrive_mbs.diagnosis.input_checks import check_trials
+from hdrive_mbs.diagnosis.input_checks import check_trials, not_compared, not_driven
 from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.report_text import report_text
 from hdrive_mbs.diagnosis.result import Diagnosis
-from hdrive_mbs.diagnosis.scale_checks import check_scale
+from hdrive_mbs.diagnosis.scale_checks import check_scale, looks_scaled
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.effects.bearing_cubic_stiffness import BearingCubicStiffness
@@ -29,6 +30,7 @@ from hdrive_mbs.effects.torque_ripple import TorqueRipple
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.network import Network
+from hdrive_mbs.plots.report_html import report_html
 from hdrive_mbs.quantities import parameter
 from hdrive_mbs.records.record import Record
 from hdrive_mbs.records.repair import repaired
@@ -79,16 +81,65 @@ def test_a_factor_that_no_unit_has_is_a_gap_and_not_a_unit() -> None:
     check_scale(simulator.trials[0], "motor_torque", own["motor_torque"], "N m")
 
 
+def test_degrees_read_as_radians_are_seen_though_the_model_does_something_else() -> None:
+    """A model whose load has five times the drag turns half as far: beside the motor's angle the load's shows the unit all the same."""
+    for size, off in ((180.0 / math.pi, True), (1.0, False), (1.3, False)):
+        [trial] = bench().trials(changed("load_angle", lambda values, size=size: size * values)[0])
+        columns = {name: 0.45 * trial.columns[name] for name in ("motor_angle", "load_angle")}
+        items = {name: trial.measured[name] for name in columns}
+        simulator = Simulator([dataclasses.replace(trial, columns=columns, measured=items)], 1e-3)
+        said = looks_scaled(simulator, factors_of(bench()))
+        assert [text.startswith("Record 'staircase': column 'load_angle' looks as if its numbers were in deg") for text in said] == [
+            True
+        ] * off
+        if off:
+            assert "beside 'motor_angle' it moves 57" in said[0]
+
+
+def test_an_angle_is_held_against_a_speed_of_another_place_too() -> None:
+    first = quiet()[0]
+    [trial] = bench().trials(first)
+    speed = np.gradient(trial.columns["motor_angle"], trial.every)
+    items = {"load_angle": trial.measured["load_angle"], "motor_speed": Measured(channel="motor.speed", noise=0.5)}
+    columns = {"load_angle": 0.4 * 180.0 / math.pi * trial.columns["load_angle"], "motor_speed": 0.4 * speed}
+    simulator = Simulator([dataclasses.replace(trial, columns=columns, measured=items)], 1e-3)
+    [said] = looks_scaled(simulator, factors_of(bench()))
+    assert "column 'load_angle' looks as if its numbers were in deg" in said
+    assert "beside 'motor_speed'" in said
+
+
 def test_what_is_no_record_is_refused_and_one_class_is_a_list_of_one() -> None:
     with pytest.raises(hm.ParameterError, match=r"Read it first: hm\.diagnose\(bench, hm\.read_records\('run_a\.csv'\)\)"):
         diagnose(bench(), "run_a.csv")  # type: ignore[arg-type]
     assert candidates(bench().scene, hm.ViscousDrag) != []
 
 
-def test_a_measured_column_that_no_record_has_is_named_in_the_notes() -> None:
+def test_a_measured_column_that_no_record_has_is_warned_of_at_the_top() -> None:
     given = tuple(record.without("load_angle") for record in quiet())
-    [note] = [note for note in run(given=given, kinds=(hm.ViscousDrag,)).notes if "load_angle" in note]
-    assert note == "'load_angle', which the bench measures, was not compared in 'staircase', 'load_cycle': no such column there."
+    found = run(given=given, kinds=(hm.ViscousDrag,))
+    [said] = found.warnings
+    assert said == "'load_angle', which the bench measures, was not compared in 'staircase', 'load_cycle': no such column there."
+    assert report_text(found).splitlines()[3].startswith("WARNING: 'load_angle', which the bench measures, was not compared")
+    assert report_html(found).index("Warning: &#x27;load_angle&#x27;") < report_html(found).index("No gap beyond noise")
+
+
+def test_a_column_that_is_spelt_otherwise_than_in_the_bench_is_asked_about() -> None:
+    first = quiet()[0]
+    given = first.with_channels(item.replacing(name="loadangle") if item.name == "load_angle" else item for item in first)
+    [said] = not_compared(bench(), (given,))
+    assert said.endswith("Columns there that the bench does not know: loadangle. Did you mean 'loadangle'? Then name both alike.")
+
+
+def test_a_scene_that_no_column_drives_is_warned_of() -> None:
+    """A scene alone takes columns named like its channels; its motor stands still, and the torque column is not used."""
+    first = quiet()[0].selecting("motor_torque", "load_angle")
+    record = first.with_channels(item.replacing(name="load.angle") if item.name == "load_angle" else item for item in first)
+    found = diagnose(bench().scene, record, candidates=(hm.ViscousDrag,), pictures=False, step=1e-3)
+    [said] = found.warnings
+    assert said.startswith("No column drives the scene, and the model stands still while the records move")
+    assert "inputs={'motor_torque': Input(path=" in said
+    simulator = Simulator(bench().trials(quiet()[0]), 1e-3)
+    assert not_driven(bench(), quiet(), simulator, factors_of(bench())) == ()
 
 
 def test_effects_with_states_of_their_own_can_be_run_on_a_record_of_a_kilohertz() -> None:
@@ -125,6 +176,12 @@ def test_a_record_without_one_of_several_measured_columns_is_used() -> None:
 def test_a_column_in_an_impossible_unit_is_refused() -> None:
     wrong = quiet()[0].with_channels(item.replacing(unit="N m" if item.name == "motor_angle" else item.unit) for item in quiet()[0])
     refused(hm.RecordError, "'motor_angle' is in N m, but 'motor_encoder'", "is in rad", "units={'motor_angle':", given=(wrong,))
+
+
+def test_a_unit_that_does_not_fit_is_quoted_as_it_was_written() -> None:
+    first = quiet()[0]
+    wrong = first.with_channels(item.replacing(unit="N m", given="kp*cm") if item.name == "motor_angle" else item for item in first)
+    refused(hm.RecordError, "'motor_angle' is in 'kp*cm', which is read as N m, but 'motor_encoder', which it measures", given=(wrong,))
 
 
 def test_an_input_in_an_impossible_unit_is_refused() -> None:

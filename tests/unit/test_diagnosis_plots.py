@@ -115,6 +115,23 @@ def test_residual_panel_shows_measured_minus_simulated_in_noise() -> None:
     assert np.std(drawn["with the cause"]) < np.std(drawn["parameters refitted"])
 
 
+def test_a_model_that_follows_the_measured_line_does_not_hide_it() -> None:
+    lines = {str(line.get_label()): line for line in plot_traces(SAMPLES["effect"]()).get_lines()}
+    models = [line for label, line in lines.items() if label in ("nominal", "parameters refitted", "with the cause")]
+    assert len(models) == 3
+    for line in models:
+        assert lines["measured"].get_linewidth() > 2.0 * line.get_linewidth()
+        assert list(lines.values()).index(lines["measured"]) < list(lines.values()).index(line)  # drawn before, so below
+
+
+def test_residuals_are_labelled_in_plain_words() -> None:
+    answer = SAMPLES["effect"]()
+    lower = figure_of(plot_traces(answer)).axes[1]
+    assert lower.get_ylabel().replace("\n", " ") == "measured minus simulated [standard deviations of the noise]"
+    summary = figure_of(plot(answer)).axes[-1]
+    assert summary.get_xlabel() == "time [s] (load angle, record 'load_cycle')"
+
+
 def test_held_out_stretches_are_shaded_where_they_are() -> None:
     answer = SAMPLES["effect"]()
     axes = plot_traces(answer)

@@ -36,9 +36,28 @@ def test_a_place_says_what_explains_the_gap_there() -> None:
     ]
     assert said == [
         "load: probability 0.50; an unknown signal there explains 48 % of the gap",
-        "gear: probability 0.50; gear stiffness off beyond its tolerance explains the gap better than an unknown signal there",
+        "gear: probability 0.50; in place of an unknown signal there gear stiffness off beyond its tolerance would do, and with less;"
+        " this compares the two alone and is not the verdict",
         "nowhere: probability 0.50; no signal at any place",
     ]
+
+
+def test_where_nothing_but_noise_is_left_no_place_and_no_range_is_named() -> None:
+    found = SAMPLES["effect"]()
+    quiet = dataclasses.replace(SAMPLES["none"](), where=found.where, domain=found.domain)
+    text = " ".join(report_text(quiet).split())
+    assert "What is left is noise by the verdict" in text
+    assert "Over speed" not in text
+    assert "unknown signal there" not in text
+    assert "What is left is noise" not in report_text(SAMPLES["none"]())  # neither was looked for
+    assert "Over speed" in report_text(found)
+
+
+def test_of_places_that_explain_the_same_the_report_says_why_one_wins() -> None:
+    places = (Place(at="arm", probability=0.999, gain=99.0, share=0.99995), Place(at="motor", probability=0.001, gain=30.0, share=0.99995))
+    found = dataclasses.replace(SAMPLES["effect"](), where=places)
+    assert sentences.where_sentences(found)[-1].endswith("the likelier is the one that needs less signal for it.")
+    assert len(sentences.where_sentences(dataclasses.replace(found, where=places[:1]))) == 1
 
 
 @pytest.mark.parametrize(
@@ -127,6 +146,35 @@ def test_parameters_are_told_in_sigmas_of_their_tolerance_the_furthest_first() -
     assert [round(abs(z), 6) for _, z in moved] == sorted((round(abs(z), 6) for _, z in moved), reverse=True)
     assert all(abs(z) > 1.0 for _, z in moved)
     assert len(moved) == 8  # of 14, every first and second of four moves by 2.4 and -1.3 sigma
+
+
+def test_every_nominal_parameter_has_its_value_before_and_after() -> None:
+    """A dozen fit into the text; of more only those that moved are listed, and the rest are counted."""
+    answer = SAMPLES["effect"]()
+    lines = report_text(answer).splitlines()
+    start = lines.index("Nominal parameters")
+    table = "\n".join(lines[start : lines.index("", start + 3)])
+    assert all(f"  {item.name} " in table for item in answer.parameters)
+    assert "refitted (95 % interval)" in table
+    assert "a value known to 10 % that halves has moved by ln(0.5)/0.1 = -6.9 sigma" in " ".join(table.split())
+    many = dataclasses.replace(
+        answer, parameters=tuple(dataclasses.replace(p, name=f"{p.name}_{k}") for k in "ab" for p in answer.parameters)
+    )
+    text = report_text(many)
+    moved = [item for item, _ in sentences.moved_parameters(many)]
+    assert f"  {28 - len(moved)} more moved by less than 1 sigma; diagnosis.json has them all under 'parameters'" in text
+    assert math.log(0.5) / 0.1 == pytest.approx(-6.9, abs=0.05)
+
+
+def test_a_parameter_far_off_that_is_not_claimed_stands_beside_the_verdict() -> None:
+    answer = SAMPLES["none"]()
+    far = dataclasses.replace(answer.parameters[0], name="motor_inertia", nominal=2.0, value=2.0 * math.exp(-0.17), tolerance=0.05)
+    off = dataclasses.replace(answer, parameters=(far, *answer.parameters[1:]))
+    said = "The fit moved motor inertia by -3.4 sigma of its tolerance, which the verdict does not claim"
+    assert report_text(off).splitlines()[4].startswith(said)
+    assert sentences.strained(answer) == ""
+    claimed = dataclasses.replace(off, causes=(dataclasses.replace(SAMPLES["parameter"]().causes[0], parameters=(far,)),))
+    assert sentences.strained(claimed) == ""
 
 
 def test_domain_names_the_part_that_holds_more_than_its_share() -> None:

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
 import pytest
 
+import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.domain import concentrated, domain_map
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.result import DomainBin
-from tests.unit.test_locate import TIMES, fitted, recorded
+from hdrive_mbs.diagnosis.sentences import domain_sentences
+from hdrive_mbs.diagnosis.simulator import Simulator
+from tests.unit.test_locate import STEP, TIMES, fitted, recorded
 
 
 def bins_over(bins: tuple[DomainBin, ...], over: str) -> list[DomainBin]:
@@ -90,3 +96,50 @@ def test_sentences_name_reversals_and_the_crossing_of_zero_torque() -> None:
     for over, unit, words in (("direction", "rad/s", "at reversals and at rest"), ("torque", "N m", "where the torque crosses zero")):
         bins = [DomainBin(over=over, unit=unit, low=a, high=b, excess=e, after=math.nan, samples=n) for a, b, e, n in shares]
         assert concentrated(bins) == (words,)
+
+
+def test_speeds_are_those_that_were_measured_and_named_with_their_place() -> None:
+    """The model turns at up to 180 rad/s; a speed column that never leaves 90 rad/s sets the range, and its gaps are filled."""
+    plain = recorded().trials[0]
+    speed = 90.0 * np.sin(TIMES)
+    speed[:5] = math.nan
+    columns = {**plain.columns, "motor_speed": speed}
+    items = {**plain.measured, "motor_speed": Measured(channel="motor.speed", noise=0.1)}
+    simulator = Simulator([dataclasses.replace(plain, columns=columns, measured=items)], STEP)
+    bins = domain_map(simulator, fitted(simulator))
+    assert max(item.high for item in bins_over(bins, "speed")) == pytest.approx(np.nanmax(speed), rel=1e-12)
+    said = domain_sentences(bins)
+    assert said[0].startswith("Over motor speed: ")
+    assert said[1].startswith("Over gear torque: ")
+    assert {text.partition(":")[0] for text in said[2:]} == {
+        "Over direction of motor", "Over order of motor", "Over frequency", "Over time",
+    }  # fmt: skip
+
+
+def test_speeds_and_torques_without_a_measured_one_are_those_of_the_run_with_the_cause() -> None:
+    """Whatever the refitted model does without the cause."""
+    simulator = recorded()
+    null = fitted(simulator)
+    weak = null.z.copy()
+    weak[0] = 1.0
+    bins, again = (domain_map(simulator, first, fitted(simulator)) for first in (null, fitted(simulator, weak)))
+    for over in ("speed", "torque"):
+        assert [item.high for item in bins_over(bins, over)] == [item.high for item in bins_over(again, over)]
+
+
+def test_views_of_a_record_that_hold_different_parts_are_put_together() -> None:
+    """A rotor bench lays each record beside a line of its own; a part that one of them has not carries nothing there."""
+    simulator = recorded()
+    plain = simulator.trials[0]
+    lone = hm.Scene(name="motor alone", parts={"motor": plain.scene.parts["motor"]}, connections=[])
+    columns = {"motor_torque": plain.columns["motor_torque"]}
+    alone = dataclasses.replace(plain, name="motor", scene=lone, columns=columns, measured={"motor_torque": plain.measured["motor_torque"]})
+    both = Simulator([alone, plain], STEP)
+    bins = domain_map(both, dataclasses.replace(fitted(simulator), hypothesis=Hypothesis(()), z=np.zeros(0), residuals=_residuals(both)))
+    assert {item.of for item in bins_over(bins, "torque")} == {"gear"}
+
+
+def _residuals(simulator: Simulator) -> np.ndarray:
+    [found] = simulator.residuals(Hypothesis(()), [np.zeros(0)])
+    assert found is not None
+    return found

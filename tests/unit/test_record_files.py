@@ -559,3 +559,23 @@ def test_what_a_record_writes_is_read_back(tmp_path: Path) -> None:
     for channel in record:
         assert again[channel.name].unit == channel.unit
         assert np.allclose(again[channel.name].values, channel.values, rtol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("dgr", r"unit 'dgr' would be a decigrain, in which nobody records\. Did you mean 'deg'\?"),
+        ("Prad", r"unit 'Prad' would be a petaradian, in which nobody records\. Did you mean 'rad'\?"),
+        ("das", r"unit 'das' would be a decasecond"),
+    ],
+)
+def test_a_prefix_that_nobody_writes_is_a_slip(text: str, words: str) -> None:
+    with pytest.raises(hm.UnitError, match=words):
+        conversion(text, "a.csv, channel 'x'")
+
+
+@pytest.mark.parametrize(
+    "text", ["mdeg", "hPa", "dm", "cN m", "kN", "urad/s", "mm/s^2", "krpm", "kgf", "ft", "inch", "min", "kWh", "Nm", "g_0"]
+)
+def test_usual_prefixes_are_read(text: str) -> None:
+    assert conversion(text, "x").factor > 0.0
