@@ -198,6 +198,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "records.alignment": ("ClockMatch", "clock_match", "aligned"),
     "engine.solvers": ("Solver", "DormandPrince", "RungeKutta4", "Trapezoidal", "GeneralizedAlpha"),
     "engine.assembly": ("LoweringWarning",),
+    "analysis.coarse_step": ("CoarseStepWarning",),
     "analysis.result": ("Result", "load"),
     "analysis.time_response": ("Response", "simulate"),
     "analysis.drive_train.start_up": ("StartUp", "start_up"),

@@ -69,7 +69,7 @@ def run(
         few = chosen_channels(response) if chosen.network().is_lateral else None
         _print(chosen.name, response.status, summary, dict(response.units), few)
         print(f"{response.steps} steps, {response.seconds:.3f} s CPU. Result: {result}. Picture: {pictures[0]}.")
-    if response.status != "complete":
+    if not response.status.startswith("complete"):
         raise typer.Exit(130)
 
 
