@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.analysis.coarse_step import coarse_step, warn_of
+from hdrive_mbs.analysis.main_channels import main_channels
 from hdrive_mbs.analysis.result import Result, write_csv
 from hdrive_mbs.analysis.stable_step import check_run, check_start
 from hdrive_mbs.analysis.time_tables import for_tables
@@ -23,6 +24,7 @@ from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Body, Network
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.progress import progress_bar
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray, TimeHistory
@@ -102,6 +104,19 @@ class Response(Result):
     def summary(self) -> ChannelSummaries:
         """min, max, mean, rms and final value of each channel."""
         return ChannelSummaries({name: self[name].summary() for name in self.values})
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """min, max, mean and final value of speeds, torques and twists, of a rotor line of its main channels."""
+        lateral = any(name.endswith(".radial") for name in self.channels)
+        turning = [name for name in self.channels if name.endswith((".speed", ".torque", ".twist"))]
+        shown = main_channels(self.scene, self.channels) if lateral else turning
+        figures = {name: self[name].summary() for name in shown}
+        rows = [(f"{name} [{self.units[name]}]", *(one[key] for key in ("min", "max", "mean", "final"))) for name, one in figures.items()]
+        notes = [f"{len(shown)} of {len(self.channels)} channels; summary() has all"]
+        if self.error:
+            worst = max(self.error, key=lambda name: self.error[name])
+            notes.append(f"estimated error: at most {100.0 * self.error[worst]:.2g} % of the largest value ({worst})")
+        return (PrintedTable(heads=("channel", "min", "max", "mean", "final"), rows=tuple(rows), notes=tuple(notes)),)
 
 
 def simulate(

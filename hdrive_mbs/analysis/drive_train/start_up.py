@@ -15,6 +15,7 @@ from hdrive_mbs.analysis.time_response import Response, integrate
 from hdrive_mbs.components.motor import Motor
 from hdrive_mbs.engine.solvers import Solver
 from hdrive_mbs.errors import SceneError
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray, TimeHistory
 
@@ -52,6 +53,21 @@ class StartUp(Response):
     final_torque: Mapping[str, float]
     peak_motor_torque: float
     take_up_time: Mapping[str, float]
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """The figures of the start: of the motor, and of each connection."""
+        figures = {
+            f"final speed of {self.motor} [rad/s]": self.final_speed,
+            "rise time to 95 % of it [s]": self.rise_time,
+            "overshoot [%]": 100.0 * self.overshoot,
+            "peak of the motor's torque [N m]": self.peak_motor_torque,
+        }
+        rows = [
+            (name, torque, self.peak_time[name], self.final_torque[name], self.take_up_time.get(name, "-"))
+            for name, torque in self.peak_torque.items()
+        ]
+        heads = ("connection", "peak torque [N m]", "at [s]", "final torque [N m]", "carries torque from [s]")
+        return (PrintedTable(heads=("figure", "value"), rows=tuple(figures.items())), PrintedTable(heads=heads, rows=tuple(rows)))
 
 
 def start_up(

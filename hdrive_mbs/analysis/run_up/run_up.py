@@ -24,6 +24,7 @@ from hdrive_mbs.engine.solvers import Solver, Trapezoidal
 from hdrive_mbs.errors import AnalysisError, ParameterError, SimulationError, unknown_place
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.network.rigid_mass import NOTHING, RigidMass
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray
 
@@ -80,6 +81,26 @@ class RunUp(Response):
     driven_speed: float
     static_deflection: Mapping[str, FloatArray]
     peak_error: Mapping[str, float]
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """Peaks of each rotor, the final speed and the critical speeds."""
+        heads = ["rotor", "peak of C, 0-peak [um]", "at [rad/s]", "at [s]", "peak of P, 0-peak [um]"]
+        rows = [
+            [
+                rotor,
+                1e6 * self.peak_amplitude[rotor],
+                self.peak_speed[rotor],
+                self.peak_time[rotor],
+                1e6 * self.mass_centre_amplitude[rotor],
+                *([100.0 * self.peak_error[rotor]] if self.peak_error else []),
+            ]
+            for rotor in self.rotors
+        ]
+        heads += ["estimated error of the peak of C [%]"] if self.peak_error else []
+        criticals = ", ".join(f"{speed:.5g}" for speed in self.critical_speeds) or "none met"
+        criticals = str(self.settings.get("critical_speeds", criticals))
+        notes = (f"final speed {self.final_speed:.6g} rad/s; undamped critical speeds [rad/s]: {criticals}",)
+        return (PrintedTable(heads=tuple(heads), rows=tuple(map(tuple, rows)), notes=notes),)
 
     def peaks(self, rotor: str) -> tuple[SpeedPeak, ...]:
         """Local maxima of the whirl of C over the run, in the order of time; beats after a critical speed are not counted."""
