@@ -198,6 +198,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "records.alignment": ("ClockMatch", "clock_match", "aligned"),
     "engine.solvers": ("Solver", "DormandPrince", "RungeKutta4", "Trapezoidal", "GeneralizedAlpha"),
     "engine.assembly": ("LoweringWarning",),
+    "analysis.coarse_step": ("CoarseStepWarning",),
     "analysis.result": ("Result", "load"),
     "analysis.time_response": ("Response", "simulate"),
     "analysis.drive_train.start_up": ("StartUp", "start_up"),
@@ -252,7 +253,9 @@ __all__ = ["__version__", *sorted(_MODULE_OF)]
 def __getattr__(name: str) -> Any:
     module = _MODULE_OF.get(name)
     if module is None:
-        raise AttributeError(f"module 'hdrive_mbs' has no attribute {name!r}")
+        from hdrive_mbs.errors import meant
+
+        raise AttributeError(f"module 'hdrive_mbs' has no attribute {name!r}.{'' if name.startswith('_') else meant(name, _MODULE_OF)}")
     value = getattr(importlib.import_module(f"hdrive_mbs.{module}"), name)
     globals()[name] = value
     return value

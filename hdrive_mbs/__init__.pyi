@@ -1,5 +1,6 @@
 """What ``import hdrive_mbs`` offers, for type checkers and editors (the package imports lazily)."""
 
+from hdrive_mbs.analysis.coarse_step import CoarseStepWarning as CoarseStepWarning
 from hdrive_mbs.analysis.drive_train.campbell import Campbell as Campbell
 from hdrive_mbs.analysis.drive_train.campbell import torsional_campbell as torsional_campbell
 from hdrive_mbs.analysis.drive_train.modes import Modes as Modes

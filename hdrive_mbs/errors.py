@@ -61,13 +61,17 @@ LISTED = 40
 """Names that an error lists; of more than that only those that are spelt alike, and how many there are."""
 
 
+def meant(name: str, known: Iterable[str]) -> str:
+    """`` Did you mean 'gear'?`` for a name that is spelt like one of the known ones, else nothing."""
+    return "".join(f" Did you mean {one!r}?" for one in difflib.get_close_matches(str(name), list(known), 1, 0.7))
+
+
 def unknown_place(kind: str, name: str, known: Iterable[str], owner: str = "This scene") -> PlaceError:
     """A PlaceError of the form ``No place 'gaer'. This scene has: motor, gear. Did you mean 'gear'?``"""
     names = list(known)
     if len(names) <= LISTED:
-        near = difflib.get_close_matches(str(name), names, 1, 0.7) if len(names) > 1 else []
-        meant = "".join(f" Did you mean {one!r}?" for one in near)
-        return PlaceError(f"No {kind} {name!r}. {owner} has: {', '.join(names) or 'none'}.{meant}")
+        near = meant(name, names) if len(names) > 1 else ""
+        return PlaceError(f"No {kind} {name!r}. {owner} has: {', '.join(names) or 'none'}.{near}")
     alike = list(dict.fromkeys([*difflib.get_close_matches(name, names, 8, 0.5), *(one for one in names if one.startswith(f"{name}."))]))
     few = alike[:16] or names[:16]
     which = "like it" if alike else "for instance"

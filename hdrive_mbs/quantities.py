@@ -115,9 +115,12 @@ def table(
     return dataclasses.field(default=default, metadata={"quantity": quantity})
 
 
-def option(doc: str, *, default: Any = dataclasses.MISSING) -> Any:
-    """A field that is not a number: a law, a switch, the name of a place."""
-    return dataclasses.field(default=default, metadata={"doc": doc})
+def option(doc: str, *, default: Any = dataclasses.MISSING, called_with: tuple[tuple[str, ...], ...] = ()) -> Any:
+    """A field that is not a number: a law, a switch, the name of a place.
+
+    called_with : of a field that takes a function the arguments that it gets, in each of the ways there are
+    """
+    return dataclasses.field(default=default, metadata={"doc": doc, "called_with": called_with})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,6 +165,8 @@ class Described:
     """Base of all immutable data: checks its quantities, compares by value, copies with changes."""
 
     _kind: ClassVar[str] = "object"
+    _use: ClassVar[str] = ""
+    """Where an object of this kind goes, for one who put it somewhere else."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         """Add the fields with unit, range and meaning to the docstring, where ``help`` shows them."""
@@ -177,7 +182,7 @@ class Described:
             raise KeywordError(f"{cls.__name__}({values[0]!r}): values are given by name. It has: {', '.join(known)}.")
         for name in fields:
             if name not in known and name not in inspect.signature(cls).parameters:
-                raise KeywordError(f"No field {name!r}. {cls.__name__} has: {', '.join(known)}.")
+                raise KeywordError(str(unknown_place("field", name, known, cls.__name__)))
         if not needed <= fields.keys():
             missing = [field for field in dataclasses.fields(cls) if field.name in needed and field.name not in fields]
             wanted = inspect.signature(cls).parameters  # of an initialiser of the class's own, not all fields
@@ -201,6 +206,7 @@ class Described:
                 self._check_field(field.name, value, quantity)
             else:
                 _check_option(f"{type(self).__name__}.{field.name}", value, str(field.type), field.metadata.get("doc", ""))
+                _check_call(f"{type(self).__name__}.{field.name}", value, field.metadata.get("called_with", ()))
         self.check()
 
     def _check_field(self, name: str, value: Any, quantity: Quantity) -> None:
@@ -347,10 +353,40 @@ def _check_option(where: str, value: Any, annotation: str, doc: str) -> None:
     if "Callable[" in annotation and isinstance(value, type) and issubclass(value, Described):
         raise ParameterError(f"{where} = {value.__name__} is a class; give an object of it: {value.__name__}(...).")
     if "Callable[" in annotation and not callable(value):
+        laws = {kind for kind in kinds if kind.isidentifier()}
         only_function = annotation.startswith("Callable[")
-        if only_function or not isinstance(value, Described):
-            wanted = "a Python function" if only_function else "a law of the library or a Python function"
-            raise ParameterError(f"{where} = {readable(value, None)}: must be {wanted} ({doc}).")
+        if not (laws & {cls.__name__ for cls in type(value).__mro__} or (not laws and not only_function and isinstance(value, Described))):
+            wanted = "a law of the library or a Python function" if laws else "a Python function"
+            raise ParameterError(f"{where} = {readable(value, None)}: must be {wanted} ({doc}).{_instead(value)}")
+
+
+def _instead(value: Any) -> str:
+    """What an object of another kind is, and where it goes."""
+    if not isinstance(value, Described):
+        return ""
+    use = value._use.format(name=type(value).__name__)
+    return f" {type(value).__name__} is of the kind {value._kind!r}{': ' if use else ''}{use}."
+
+
+def _check_call(where: str, value: Any, called_with: tuple[tuple[str, ...], ...]) -> None:
+    """Refuse a function that cannot be called with any of these arguments."""
+    if not called_with or isinstance(value, Described):
+        return
+    try:
+        signature = inspect.signature(value)
+    except (TypeError, ValueError):  # one that is compiled tells nothing
+        return
+    for arguments in called_with:
+        try:
+            signature.bind(*arguments)
+            return
+        except TypeError:
+            continue
+    ways = " or ".join(f"({', '.join(arguments)})" for arguments in called_with)
+    raise ParameterError(
+        f"{where} = {readable(value, None)}: takes {signature} but is called with {ways}. Give a function of these; what else it needs "
+        "functools.partial or a default value holds."
+    )
 
 
 @cache

@@ -25,6 +25,7 @@ from hdrive_mbs.errors import FileFormatError, HdriveError
 from hdrive_mbs.export.formats import write_table
 from hdrive_mbs.export.table import table_of
 from hdrive_mbs.memory_limit import check_claim
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.scene_file import scene_from_dict, scene_to_dict
 from hdrive_mbs.writing import write_text, write_whole
@@ -69,14 +70,27 @@ class Result:
             cls.__repr__ = Result.__repr__  # type: ignore[method-assign]
 
     def __repr__(self) -> str:
-        """Name, scene, status and a line on each field, the own ones first; the numbers themselves are in the fields."""
-        of = f" of {self.scene.name!r}" if self.scene is not None else ""
+        """Name, scene and status; ``print`` shows the figures."""
+        return f"{self._head()} (print it to see its figures)"
+
+    def __str__(self) -> str:
+        """Name, scene, status, and the tables of this result; without any a line on each field, the own ones first."""
+        tables = self.tables()
+        if tables:
+            return "\n".join([self._head(), *map(str, tables)])
         shown = [item.name for item in dataclasses.fields(self) if item.name not in ("scene", "status", "settings", "versions")]
         own = inspect.get_annotations(type(self))
         shown.sort(key=lambda name: name not in own)
         width = max(map(len, shown), default=0)
-        lines = [f"  {name:<{width}}  {_in_short(getattr(self, name))}" for name in shown]
-        return "\n".join([f"{type(self).__name__}{of}: {self.status}", *lines])
+        return "\n".join([self._head(), *(f"  {name:<{width}}  {_in_short(getattr(self, name))}" for name in shown)])
+
+    def _head(self) -> str:
+        of = f" of {self.scene.name!r}" if self.scene is not None else ""
+        return f"{type(self).__name__}{of}: {self.status}"
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """Its figures with their units, as print() shows them and the command line draws them; none for most results."""
+        return ()
 
     def made_from(self) -> dict[str, Any]:
         """Where the numbers come from, as plain data: kind of result, status, settings, versions, and the scene.

@@ -12,7 +12,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.analysis.coarse_step import coarse_step, warn_of
+from hdrive_mbs.analysis.main_channels import main_channels
 from hdrive_mbs.analysis.result import Result, write_csv
+from hdrive_mbs.analysis.stable_step import check_run, check_start
 from hdrive_mbs.analysis.time_tables import for_tables
 from hdrive_mbs.engine.assembly import Assembly, assemble
 from hdrive_mbs.engine.simulation import RawRun, run
@@ -21,6 +24,7 @@ from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Body, Network
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.progress import progress_bar
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray, TimeHistory
@@ -101,6 +105,19 @@ class Response(Result):
         """min, max, mean, rms and final value of each channel."""
         return ChannelSummaries({name: self[name].summary() for name in self.values})
 
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """min, max, mean and final value of speeds, torques and twists, of a rotor line of its main channels."""
+        lateral = any(name.endswith(".radial") for name in self.channels)
+        turning = [name for name in self.channels if name.endswith((".speed", ".torque", ".twist"))]
+        shown = main_channels(self.scene, self.channels) if lateral else turning
+        figures = {name: self[name].summary() for name in shown}
+        rows = [(f"{name} [{self.units[name]}]", *(one[key] for key in ("min", "max", "mean", "final"))) for name, one in figures.items()]
+        notes = [f"{len(shown)} of {len(self.channels)} channels; summary() has all"]
+        if self.error:
+            worst = max(self.error, key=lambda name: self.error[name])
+            notes.append(f"estimated error: at most {100.0 * self.error[worst]:.2g} % of the largest value ({worst})")
+        return (PrintedTable(heads=("channel", "min", "max", "mean", "final"), rows=tuple(rows), notes=tuple(notes)),)
+
 
 def simulate(
     scene: Scene,
@@ -130,8 +147,45 @@ def simulate(
     cancel : event that stops the run; what was computed is returned with status "cancelled"
     lowering : "python" runs every law as a Python callback (for comparison only)
 
-    Raises SimulationError when the run diverged or stopped early, ParameterError for bad arguments.
+    Raises SimulationError when the run diverged or stopped early, or the step of an explicit solver is beyond its limit of
+    stability; ParameterError for bad arguments.  Warns CoarseStepWarning, and says so in the status, where the given step
+    of an implicit solver is too long for the motion that comes out.
     """
+    response = integrate(
+        scene,
+        duration,
+        solver=solver,
+        initial_speed=initial_speed,
+        initial=initial,
+        sample_step=sample_step,
+        estimate_error=estimate_error,
+        progress=progress,
+        cancel=cancel,
+        lowering=lowering,
+    )
+    warn_of(scene.name, response.status)
+    return response
+
+
+def integrate(
+    scene: Scene,
+    duration: float,
+    *,
+    solver: Solver | None = None,
+    initial_speed: float = 0.0,
+    initial: Mapping[str, float] | None = None,
+    sample_step: float = 0.0,
+    estimate_error: bool = False,
+    progress: bool | None = None,
+    cancel: threading.Event | None = None,
+    lowering: str = "symbolic",
+    judged: bool = True,
+) -> Response:
+    """What ``simulate`` does, without the warning.
+
+    judged : say in the status where the step of an implicit solver that is given is too long for what comes out
+    """
+    given = solver is not None
     duration = _number("duration", duration, "s")
     sample_step = _number("sample_step", sample_step, "s")
     if duration <= 0.0:
@@ -149,11 +203,14 @@ def simulate(
     assembly = assemble(network, lowering=lowering)
     starts = initial_values(network, initial_speed, initial or {})
 
+    check_start(assembly, solver, duration, starts)
     every = 0.0 if estimate_error else sample_step  # between thin samples the interpolation would err more than the solver
 
     def once(with_solver: Solver) -> RawRun:
         with progress_bar(f"{scene.name}: {duration:g} s", duration, progress) as report:
-            return run(assembly, duration=duration, solver=with_solver, **starts, sample_step=every, progress=report, cancel=cancel)
+            raw = run(assembly, duration=duration, solver=with_solver, **starts, sample_step=every, progress=report, cancel=cancel)
+        check_run(assembly, with_solver, raw)
+        return raw
 
     raw, error, used = once(solver), {}, solver
     if estimate_error and raw.status == "complete":
@@ -163,9 +220,10 @@ def simulate(
             divisor = 1.0 if solver.adaptive else 2.0**solver.order - 1.0
             error = {name: value / divisor for name, value in _difference(network, raw, finer).items()}
             raw = finer
+    remark = coarse_step(assembly, used, raw) if given and judged else ""
     raw = _thinned(raw, sample_step) if estimate_error else raw
     settings = {"duration": duration, "solver": used.describe(), "initial_speed": initial_speed, "sample_step": sample_step}
-    response = _response(scene, network, assembly, raw, settings | {"initial": dict(initial or {})}, error)
+    response = _response(scene, network, assembly, raw, settings | {"initial": dict(initial or {})}, error, remark)
     assembly.mbs.Reset()  # exudyn would keep the samples of its sensors
     return response
 
@@ -293,7 +351,7 @@ def _point(moment: Moment, k: int) -> Moment:
 
 
 def _response(
-    scene: Scene, network: Network, assembly: Assembly, raw: RawRun, settings: dict[str, Any], error: dict[str, float]
+    scene: Scene, network: Network, assembly: Assembly, raw: RawRun, settings: dict[str, Any], error: dict[str, float], remark: str
 ) -> Response:
     moment = run_moment(network, raw)
     values: dict[str, FloatArray] = {}
@@ -322,7 +380,11 @@ def _response(
         values[name], units[name], docs[name] = rates[state.name], f"{state.unit}/s", f"rate of {state.name}"
         slopes[state.name] = name
     slopes = {name: slope for name, slope in slopes.items() if slope in values}
-    status = raw.status if raw.status == "complete" else f"cancelled at t = {raw.times[-1]:.6g} s; the histories end there"
+    status = (
+        "; ".join(["complete", *filter(None, [remark])])
+        if raw.status == "complete"
+        else f"cancelled at t = {raw.times[-1]:.6g} s; the histories end there"
+    )
     return Response(
         scene=scene,
         status=status,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
-from hdrive_mbs.cli.output import print_table, write_json
+from hdrive_mbs.cli.output import print_tables, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 
 if TYPE_CHECKING:
@@ -59,15 +59,7 @@ def modes(
         },
     )
     if json != "-":
-        rows = []
-        for k, frequency in enumerate(result.undamped):
-            shape = ", ".join(f"{body} {result.shapes[i, k]:+.3f}" for i, body in enumerate(result.bodies))
-            rows.append([str(k + 1), float(frequency), float(frequency / 6.283185307179586), shape])
-        print_table(f"{chosen.name}: undamped ({result.status})", ["mode", "[rad/s]", "[Hz]", "shape: angles, true sense"], rows)
-        damped = [[str(k + 1), float(w), float(z)] for k, (w, z) in enumerate(zip(result.damped, result.damping_ratio, strict=True))]
-        print_table("damped", ["mode", "[rad/s]", "damping ratio"], damped)
-        if len(result.decay_rates):
-            print("non-oscillating motions decay with " + ", ".join(f"{rate:.4g}" for rate in result.decay_rates) + " 1/s")
+        print_tables(chosen.name, result.status, result.tables())
 
 
 def _whirl_modes(scene: Scene, torque: float | None, speed: float | None, count: int, out: Path | None, json: str | None) -> None:
@@ -95,10 +87,4 @@ def _whirl_modes(scene: Scene, torque: float | None, speed: float | None, count:
         },
     )
     if json != "-":
-        headers = ["mode", "whirl", "damped [rad/s]", "|eigenvalue| [rad/s]", "damping ratio", "log decrement"]
-        shown = [[str(k), row[0], *(f"{value:.6g}" for value in row[1:])] for k, row in enumerate(rows, start=1)]
-        print_table(f"{scene.name}: modes at {result.speed:g} rad/s ({result.status})", headers, shown)
-        if result.free_motions:
-            print(f"{result.free_motions} motions are held by no spring")
-        if len(result.decay_rates):
-            print("non-oscillating motions decay with " + ", ".join(f"{rate:.4g}" for rate in result.decay_rates) + " 1/s")
+        print_tables(scene.name, result.status, result.tables())

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from hdrive_mbs.printed_table import PrintedTable, cell, is_number
 from hdrive_mbs.writing import write_text
 
 NAME = 24
@@ -42,6 +43,15 @@ def _clean(value: Any) -> Any:
     return value
 
 
+def print_tables(name: str, status: str, tables: Sequence[PrintedTable]) -> None:
+    """The tables of a result; the first one is headed by the name of the scene and the status."""
+    for index, table in enumerate(tables):
+        first = f"{name}: {table.title} ({status})" if table.title else f"{name}: {status}"
+        print_table(table.title if index else first, table.heads, table.rows)
+        for note in table.notes:
+            print(note)
+
+
 def print_table(title: str, headers: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """A table on stdout."""
     from rich.console import Console
@@ -51,17 +61,9 @@ def print_table(title: str, headers: Sequence[str], rows: Iterable[Sequence[obje
     table = Table(title=escape(title), title_justify="left")
     rows = list(rows)
     for index, header in enumerate(headers):
-        numbers = index > 0 and all(_is_number(row[index]) for row in rows)
+        numbers = index > 0 and all(is_number(row[index]) for row in rows)
         name = index == 0 and all(len(str(row[0])) <= NAME for row in rows)
         table.add_column(escape(header), justify="right" if numbers else "left", overflow="fold", no_wrap=name)
     for row in rows:
-        table.add_row(*[f"{item:.6g}" if isinstance(item, float) else escape(str(item)) for item in row])
+        table.add_row(*[escape(cell(item)) for item in row])
     Console(width=None if sys.stdout.isatty() else 120).print(table)
-
-
-def _is_number(item: object) -> bool:
-    try:
-        float(str(item) or "nan")
-    except ValueError:
-        return item in ("-", None)
-    return True

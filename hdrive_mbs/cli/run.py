@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
-from hdrive_mbs.cli.output import print_table, write_json
+from hdrive_mbs.cli.output import print_tables, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.engine import solvers
 from hdrive_mbs.engine.solvers import Solver
@@ -37,7 +37,6 @@ def run(
     from hdrive_mbs.analysis.time_response import simulate
     from hdrive_mbs.plots import plot as draw
     from hdrive_mbs.plots import save_figure
-    from hdrive_mbs.plots.response import chosen_channels
 
     chosen = open_scene(scene, set_ or (), effect or (), effects or ())
     taken = _solver(solver, tolerance, step, chosen.network().is_lateral)
@@ -67,10 +66,9 @@ def run(
         },
     )
     if json != "-":
-        few = chosen_channels(response) if chosen.network().is_lateral else None
-        _print(chosen.name, response.status, summary, dict(response.units), few)
+        print_tables(chosen.name, response.status, response.tables())
         print(f"{response.steps} steps, {response.seconds:.3f} s CPU. Result: {result}. Picture: {pictures[0]}.")
-    if response.status != "complete":
+    if not response.status.startswith("complete"):
         raise typer.Exit(130)
 
 
@@ -88,9 +86,3 @@ def _solver(name: str, tolerance: float, step: float, is_rotor_line: bool) -> So
     if name not in makers:
         raise ParameterError(f"--solver {name!r}: must be one of automatic, {', '.join(makers)}.")
     return makers[name]()
-
-
-def _print(name: str, status: str, summary: Mapping[str, Mapping[str, float]], units: dict[str, str], few: list[str] | None) -> None:
-    shown = few or [channel for channel in summary if channel.endswith((".speed", ".torque", ".twist"))]
-    rows = [[f"{c} [{units[c]}]", *(summary[c][key] for key in ("min", "max", "mean", "final"))] for c in shown]
-    print_table(f"{name}: {status}", ["channel", "min", "max", "mean", "final"], rows)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
-from hdrive_mbs.cli.output import print_table, write_json
+from hdrive_mbs.cli.output import print_tables, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def run_up(
     files = {"result": str(saved), "csv": None if table is None else str(table), "pictures": [str(path) for path in pictures]}
     write_json(json, {"scene": chosen.name, **figures(result), **files, "origin": result.made_from()})
     if json != "-":
-        _print(chosen.name, result)
+        print_tables(chosen.name, result.status, result.tables())
         print(f"{result.steps} steps, {result.seconds:.3f} s CPU. Result: {saved}. Picture: {pictures[0]}.")
     if not result.status.startswith("complete"):
         raise typer.Exit(130)
@@ -89,21 +89,3 @@ def figures(result: RunUp) -> dict[str, Any]:
         "steps": result.steps,
         "seconds": result.seconds,
     }
-
-
-def _print(name: str, result: RunUp) -> None:
-    rows = [
-        [
-            rotor,
-            1e6 * result.peak_amplitude[rotor],
-            result.peak_speed[rotor],
-            result.peak_time[rotor],
-            1e6 * result.mass_centre_amplitude[rotor],
-        ]
-        for rotor in result.rotors
-    ]
-    heads = ["rotor", "peak of C, 0-peak [um]", "at [rad/s]", "at [s]", "peak of P, 0-peak [um]"]
-    print_table(f"{name}: {result.status}", heads, rows)
-    criticals = ", ".join(f"{speed:.5g}" for speed in result.critical_speeds) or "none met"
-    criticals = str(result.settings.get("critical_speeds", criticals))
-    print(f"final speed {result.final_speed:.6g} rad/s; undamped critical speeds [rad/s]: {criticals}")

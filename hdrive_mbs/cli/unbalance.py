@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import typer
 
 from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
-from hdrive_mbs.cli.output import print_table, write_json
+from hdrive_mbs.cli.output import print_tables, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.cli.speeds import parse_speeds
 from hdrive_mbs.errors import ParameterError, unknown_place
@@ -53,9 +54,9 @@ def unbalance(
             save_figure(plot(result, view=view, places=None if view == "forces" else drawn), out / f"unbalance_{view}")
     write_json(json, {**_document(result, wanted), "origin": result.made_from()})
     if json != "-":
-        rows = [[p.place, p.speed, p.amplitude, p.width, p.quality] for p in result.peaks if p.place in wanted]
-        headers = ["place", "speed [rad/s]", "amplitude, 0-peak [m]", "half-power width [rad/s]", "quality factor"]
-        print_table(f"{chosen.name}: peaks of the unbalance response ({result.status})", headers, rows)
+        (table,) = result.tables()
+        shown = dataclasses.replace(table, rows=tuple(row for row in table.rows if row[0] in wanted))
+        print_tables(chosen.name, result.status, [shown])
         print(f"{len(grid)} speeds, {result.seconds:.3f} s CPU.")
 
 

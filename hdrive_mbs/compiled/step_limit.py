@@ -43,8 +43,13 @@ def longest_step(
     values = np.asarray(np.linalg.eigvals(_jacobian(network, time, angles or {}, speeds or {}, states or {})), complex)
     if not np.isfinite(values).all():
         raise ParameterError("The rates of this network are not finite at the given point; give another one.")
+    return margin * stable_step(values)
+
+
+def stable_step(values: npt.NDArray[np.complex128]) -> float:
+    """Longest stable step [s] for these eigenvalues of the rates [1/s]; infinite where nothing vibrates or decays."""
     steps = [reach(math.atan2(abs(value.imag), min(value.real, 0.0))) / abs(value) for value in _moving(values)]
-    return margin * min(steps, default=math.inf)
+    return min(steps, default=math.inf)
 
 
 def _moving(values: npt.NDArray[np.complex128]) -> list[complex]:

@@ -17,7 +17,7 @@ class DriveTorque(Component):
     """A motor characteristic that acts on a rotor directly; for a motor with a rotor of its own use Motor."""
 
     characteristic: MotorCharacteristic | Callable[..., Value] = option(
-        "torque law: a characteristic, or a function of (speed) or (time, speed)"
+        "torque law: a characteristic, or a function of (speed) or (time, speed)", called_with=(("speed",), ("time", "speed"))
     )
 
     def check(self) -> None:

@@ -23,7 +23,9 @@ class Load(Component):
     """
 
     inertia: float = parameter("kg m^2", "inertia J_MR on its own axis", above=0.0)
-    torque: LoadLaw | Callable[..., Value] = option("load law, or a function of (time) or (time, angle, speed); positive resists")
+    torque: LoadLaw | Callable[..., Value] = option(
+        "load law, or a function of (time) or (time, angle, speed); positive resists", called_with=(("time",), ("time", "angle", "speed"))
+    )
     viscous: float = parameter("N m s/rad", "viscous drag on the absolute speed", default=0.0, low=0.0)
 
     def check(self) -> None:

@@ -22,7 +22,7 @@ class Motor(Component):
 
     inertia: float = parameter("kg m^2", "rotor inertia J_s", above=0.0)
     characteristic: MotorCharacteristic | Callable[..., Value] = option(
-        "torque law: a characteristic, or a function of (speed) or (time, speed)"
+        "torque law: a characteristic, or a function of (speed) or (time, speed)", called_with=(("speed",), ("time", "speed"))
     )
     viscous: float = parameter("N m s/rad", "viscous drag on the absolute speed", default=0.0, low=0.0)
 

@@ -39,12 +39,25 @@ class Rotor(Component):
 
     @classmethod
     def disc(cls, *, diameter: float, thickness: float, density: float, bore: float = 0.0, **unbalance: Any) -> Self:
-        """A (bored) disc: m = pi rho h (D^2 - d^2)/4, Jp = m (D^2 + d^2)/8, Jt = Jp/2 + m h^2/12.  Lengths in m, density in kg/m^3."""
+        """A (bored) disc: m = pi rho h (D^2 - d^2)/4, Jp = m (D^2 + d^2)/8, Jt = Jp/2 + m h^2/12.  Lengths in m, density in kg/m^3.
+
+        Raises ParameterError for an eccentricity of more than the radius: no centre of mass lies outside of its disc.
+        """
         for name, value in (("diameter", diameter), ("thickness", thickness), ("density", density)):
             if not value > 0.0:
                 raise ParameterError(f"Rotor.disc {name} = {value:g}: must be greater than 0.")
         if not 0.0 <= bore < diameter:
             raise ParameterError(f"Rotor.disc bore = {bore:g} m: must be at least 0 and less than the diameter of {diameter:g} m.")
+        rotor = cls._solid_disc(diameter, thickness, density, bore, unbalance)
+        if rotor.eccentricity > 0.5 * diameter:
+            raise ParameterError(
+                f"Rotor.disc eccentricity = {rotor.eccentricity:g} m: must be at most the radius of the disc, {0.5 * diameter:g} m. "
+                "It is given in m; 20 um are 20e-6 m."
+            )
+        return rotor
+
+    @classmethod
+    def _solid_disc(cls, diameter: float, thickness: float, density: float, bore: float, unbalance: dict[str, Any]) -> Self:
         mass = math.pi * density * thickness * (diameter**2 - bore**2) / 4.0
         polar = mass * (diameter**2 + bore**2) / 8.0
         return cls(mass=mass, polar_inertia=polar, transverse_inertia=polar / 2.0 + mass * thickness**2 / 12.0, **unbalance)

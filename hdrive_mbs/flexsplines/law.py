@@ -103,7 +103,7 @@ class StiffnessLaw(Described):
 class StiffnessFunction(StiffnessLaw):
     """A plain Python function torque(twist) used as a law.  A scene file cannot hold it."""
 
-    function: Callable[[Value], Value] = option("torque [N m] as a function of twist [rad]")
+    function: Callable[[Value], Value] = option("torque [N m] as a function of twist [rad]", called_with=(("twist",),))
 
     def torque(self, twist: Value) -> Value:
         return self.function(twist)

@@ -30,7 +30,9 @@ class LoadLaw(Described):
 class LoadFunction(LoadLaw):
     """A plain Python function of (time) or (time, angle, speed).  A scene file cannot hold it."""
 
-    function: Callable[..., Value] = option("torque [N m] as function of time, or of time, angle and speed")
+    function: Callable[..., Value] = option(
+        "torque [N m] as function of time, or of time, angle and speed", called_with=(("time",), ("time", "angle", "speed"))
+    )
 
     def torque(self, time: Value, angle: Value, speed: Value) -> Value:
         if _argument_count(self.function) == 1:

@@ -41,7 +41,9 @@ class MotorCharacteristic(Described):
 class MotorFunction(MotorCharacteristic):
     """A plain Python function of (speed) or (time, speed).  A scene file cannot hold it."""
 
-    function: Callable[..., Value] = option("torque [N m] as function of speed, or of time and speed")
+    function: Callable[..., Value] = option(
+        "torque [N m] as function of speed, or of time and speed", called_with=(("speed",), ("time", "speed"))
+    )
 
     def torque(self, time: Value, speed: Value) -> Value:
         needed = [item for item in inspect.signature(self.function).parameters.values() if item.default is item.empty]

@@ -26,7 +26,9 @@ class IdealSpeedMotor(MotorCharacteristic):
     A motion that does not start from rest at t = 0 needs a train that starts with it.
     """
 
-    motion: SpeedProfile | Callable[[Value], Value] = option("speed profile, or angle [rad] as a function of time [s]")
+    motion: SpeedProfile | Callable[[Value], Value] = option(
+        "speed profile, or angle [rad] as a function of time [s]", called_with=(("time",),)
+    )
 
     def check(self) -> None:
         if isinstance(self.motion, SpeedFunction):

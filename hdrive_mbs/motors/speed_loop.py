@@ -30,7 +30,9 @@ class SpeedLoop(Described):
 
     proportional_gain: float = parameter("N m s/rad", "kp, torque per speed error", low=0.0)
     integral_gain: float = parameter("N m/rad", "ki, torque per integral of the speed error", low=0.0)
-    reference: SpeedProfile | Callable[[Value], Value] = option("wanted speed [rad/s]: a profile or a function of time [s]")
+    reference: SpeedProfile | Callable[[Value], Value] = option(
+        "wanted speed [rad/s]: a profile or a function of time [s]", called_with=(("time",),)
+    )
 
     def check(self) -> None:
         if not isinstance(self.reference, SpeedProfile):

@@ -10,8 +10,10 @@ import matplotlib
 import numpy as np
 import numpy.typing as npt
 from cycler import cycler
+from matplotlib import font_manager
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.textpath import TextPath
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#56B4E9", "#E69F00")
 """Okabe and Ito, without yellow."""
@@ -73,6 +75,19 @@ def legend_above(ax: Axes, columns: int = 3) -> None:
     handles, labels = ax.get_legend_handles_labels()
     if labels:
         ax.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=min(columns, len(labels)), borderaxespad=0.2)
+
+
+def headed(figure: Figure, text: str) -> None:
+    """The title of a whole figure, in as many lines as its width asks for."""
+    size = font_manager.FontProperties(size=matplotlib.rcParams["figure.titlesize"])
+    room, lines = 72.0 * figure.get_figwidth() * 0.97, [""]
+    for word in text.split(" "):
+        longer = f"{lines[-1]} {word}".strip()
+        if lines[-1] and TextPath((0.0, 0.0), longer, prop=size).get_extents().width > room:
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    figure.suptitle("\n".join(lines), x=0.01, ha="left")
 
 
 def readable(channel: str) -> str:

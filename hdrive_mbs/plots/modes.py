@@ -10,7 +10,7 @@ from hdrive_mbs.analysis.drive_train.modes import Modes
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.network.elements import Connection
 from hdrive_mbs.plots.dispatch import plot
-from hdrive_mbs.plots.look import GREY, house_look, legend_above, new_figure, number, style
+from hdrive_mbs.plots.look import GREY, headed, house_look, legend_above, new_figure, number, style
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -57,7 +57,7 @@ def plot_modes(result: Modes, ax: Axes | None = None, *, one_axis: bool = True, 
         name = result.scene.name if result.scene is not None else "undamped modes"
         left = len(result.undamped) - count
         more = f", {left} more not drawn" if left else ""
-        figure.suptitle(f"{name}: undamped modes at {result.motor_speed:.4g} rad/s of the motor{more}", x=0.01, ha="left")
+        headed(figure, f"{name}: undamped modes at {result.motor_speed:.4g}\u2009rad/s of the motor{more}")
     first: Axes = axes[0]
     return first
 

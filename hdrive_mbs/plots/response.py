@@ -9,21 +9,13 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from hdrive_mbs.analysis.drive_train.start_up import StartUp
+from hdrive_mbs.analysis.main_channels import MOST_LINES, main_channels
 from hdrive_mbs.analysis.time_response import Response
-from hdrive_mbs.components.bearing import Bearing
-from hdrive_mbs.components.drive_torque import DriveTorque
-from hdrive_mbs.components.harmonic_drive import HarmonicDrive
-from hdrive_mbs.components.load import Load
-from hdrive_mbs.components.motor import Motor
-from hdrive_mbs.components.rotor import Rotor
 from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.plots.dispatch import plot
 from hdrive_mbs.plots.lengths import shown_unit
 from hdrive_mbs.plots.look import GREY, house_look, legend_above, new_figure, readable, style
 from hdrive_mbs.plots.thinning import thinned
-
-MOST_LINES = 4
-"""Lines in one panel of the automatic choice."""
 
 MOST_PANELS = 5
 
@@ -46,7 +38,7 @@ def plot_response(
     start, end : the part to draw [s]
     With ``ax`` all channels go there and must have one unit.
     """
-    chosen = list(channels) if channels is not None else chosen_channels(result)
+    chosen = list(channels) if channels is not None else main_channels(result.scene, result.channels)
     for name in chosen:
         if name not in result:
             raise unknown_place("channel", name, result.channels, "This response")
@@ -101,28 +93,6 @@ def plot_start_up(
                     one.axvline(time, color=GREY, linestyle=(":", "--")[k % 2], linewidth=1.0, label=label)
         legend_above(first, columns=2)
     return first
-
-
-def chosen_channels(result: Response) -> list[str]:
-    """Speeds of motors and machines, torques of motors, gears and machines; of a rotor line also how far its rotors are
-    from the axis and the forces of its bearings; else all speeds and torques."""
-    if result.scene is None:
-        return [name for name in result.channels if name.endswith((".speed", ".torque"))][:8]
-    parts = result.scene.parts
-    ends = [name for kind in (Motor, Load) for name, part in parts.items() if isinstance(part, kind)]
-    gears = [name for name, part in parts.items() if isinstance(part, HarmonicDrive)]
-    wanted = [f"{name}.speed" for name in ends] + [f"{name}.torque" for name in [*gears, *ends]]
-    found = [name for name in wanted if name in result]
-    rotors = [name for name, part in parts.items() if isinstance(part, Rotor) and f"{name}.radial" in result]
-    if rotors:
-        found = found or [f"{rotors[0]}.speed", *(f"{name}.torque" for name, part in parts.items() if isinstance(part, DriveTorque))]
-        bearings = [name for name, part in parts.items() if isinstance(part, Bearing)]
-        forces = [f"{name}.force_{axis}" for axis in "yx" for name in bearings]
-        return found + [f"{name}.radial" for name in rotors][:MOST_LINES] + [name for name in forces if name in result][:MOST_LINES]
-    if any(name.endswith(".speed") for name in found):
-        return found
-    speeds = [name for name in result.channels if name.endswith(".speed")][:6]
-    return speeds + [name for name in result.channels if name.endswith(".torque")][:6]
 
 
 def _panels(result: Response, channels: list[str], *, split: bool) -> list[list[str]]:

@@ -12,7 +12,7 @@ from hdrive_mbs.analysis.whirl.station_shapes import DIRECTIONS
 from hdrive_mbs.analysis.whirl.whirl_modes import WhirlModes
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.plots.dispatch import plot
-from hdrive_mbs.plots.look import GREY, house_look, legend_above, new_figure, number, readable, style
+from hdrive_mbs.plots.look import GREY, headed, house_look, legend_above, new_figure, number, readable, style
 from hdrive_mbs.plots.shafts import drive_order, shaft_numbers
 
 FloatArray = npt.NDArray[np.float64]
@@ -59,7 +59,7 @@ def plot_whirl_modes(result: WhirlModes, ax: Axes | None = None, *, mode: int = 
         name = result.scene.name if result.scene is not None else "rotor line"
         left = len(result.frequencies) - count
         more = f", {left} more not drawn" if left else ""
-        figure.suptitle(f"{name}: damped modes at {number(result.speed)} rad/s{more}", x=0.01, ha="left")
+        headed(figure, f"{name}: damped modes at {number(result.speed)}\u2009rad/s{more}")
         handles = {label: handle for one in axes[:count] for handle, label in zip(*one.get_legend_handles_labels(), strict=True)}
         figure.legend(handles.values(), handles.keys(), loc="outside lower left", ncols=6)
     first: Axes = axes[0]

@@ -21,7 +21,9 @@ class FunctionDeformation(DeformationLaw):
     Source: the user's.  Leaves out whether a ring can take this shape; only its length is kept.
     """
 
-    function: Callable[[FloatArray], FloatArray] = option("w [m] as a function of s [rad] from the major axis, 2 pi periodic")
+    function: Callable[[FloatArray], FloatArray] = option(
+        "w [m] as a function of s [rad] from the major axis, 2 pi periodic", called_with=(("s",),)
+    )
     scale: float = parameter("1", "factor on the function", default=1.0, above=0.0)
 
     def radial(self, angle: FloatArray) -> FloatArray:

@@ -119,7 +119,7 @@ def test_json_to_stdout_is_nothing_but_json() -> None:
         (("modes", TRAIN, "--set", "motor.inertia=2 kg"), ("kg m^2", "does not fit")),
         (("modes", TRAIN, "--set", "motor.inertia"), ("PATH=VALUE",)),
         (("run", TRAIN, "--solver", "euler"), ("euler", "dormand-prince")),
-        (("run", TRAIN, "--solver", "runge-kutta-4", "--step", "1e-3"), ("diverged", "smaller step")),
+        (("run", TRAIN, "--solver", "runge-kutta-4", "--step", "1e-3"), ("beyond its limit of stability", "shorter step")),
         (("run", TRAIN, "--duration", "0.01", "--out", f"{TRAIN}/under/a/file"), ("Cannot write", "Choose a folder")),
         (("run", TRAIN, "--effect", "Magic@motor"), ("Magic", "CoulombStribeckFriction")),
         (("run", TRAIN, "--effect", "ViscousDrag@gear.mesh:coefficient=1"), ("gear.mesh", "motor")),

@@ -373,8 +373,6 @@ BROKEN: dict[str, tuple[Callable[..., Any], str]] = {
     "returns an array": (lambda w: np.array([1.0, 2.0]), r"array of shape \(2,\)"),
     "returns an array of one": (lambda w: np.array([1.0]), r"array of shape \(1,\)"),
     "returns a complex number": (lambda w: 1j, "complex"),
-    "three arguments": (lambda a, b, c: 1.0, "missing 1 required positional argument"),
-    "no argument": (lambda: 1.0, "positional arguments"),
     "calls a method that numbers do not have": (lambda w: w.ravel()[0], "'float' object has no attribute 'ravel'"),
 }
 

@@ -247,3 +247,13 @@ def test_thinning_keeps_the_ends_and_every_extreme() -> None:
 
 def test_the_colours_keep_apart_in_grey_by_their_dashes() -> None:
     assert len({str(line) for line in LINES}) == len(LINES) == len(set(COLOURS)) == len(COLOURS)
+
+
+def test_the_title_of_a_single_mode_takes_as_many_lines_as_it_needs() -> None:
+    motor = hm.Motor(inertia=1e-4, characteristic=lambda w: 1.0 - w / 350.0)
+    parts = {"motor": motor, "shaft": hm.Shaft(stiffness=1e4), "arm": hm.Load(inertia=1.0, torque=hm.ConstantTorque(value=0.02))}
+    scene = hm.Scene(name="elbow of the second robot", parts=parts, connections=[("motor", "shaft", "arm")])
+    picture = hm.plot(hm.modes(scene))
+    assert_nothing_is_cut_off(picture)
+    title = figure_of(picture)._suptitle  # type: ignore[attr-defined]
+    assert title.get_text().replace("\n", " ") == "elbow of the second robot: undamped modes at 343\u2009rad/s of the motor"

@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 import hdrive_mbs as hm
 from hdrive_mbs.cli.main import app
 from models.harmonic_drive_train import build
+from models.jeffcott import build as jeffcott
 from models.two_rotor_line import build as rotor_line
 
 
@@ -32,24 +33,74 @@ def results() -> list[hm.Result]:
     ]
 
 
-def test_a_printed_result_names_scene_status_and_every_field_in_short_lines() -> None:
+def test_a_result_is_shown_in_one_line_and_printed_with_its_figures() -> None:
     for result in results():
-        lines = repr(result).splitlines()
-        assert lines[0] == f"{type(result).__name__} of 'harmonic drive train': {result.status}"
+        head = f"{type(result).__name__} of 'harmonic drive train': {result.status}"
+        assert repr(result) == f"{head} (print it to see its figures)"
+        assert str(result).splitlines()[0] == head
+
+
+def test_a_result_without_tables_prints_every_field_in_short_lines() -> None:
+    plain = [result for result in results() if not result.tables()]
+    assert {type(result).__name__ for result in plain} == {"TorsionCurve", "Campbell", "EnergyBalance", "Spectrum", "Reduction"}
+    for result in plain:
+        lines = str(result).splitlines()
         shown = [line.split()[0] for line in lines[1:]]
         hidden = {"scene", "status", "settings", "versions"}
         names = [name for name in result.__dataclass_fields__ if name not in hidden]
         own = [name for name in names if name in type(result).__annotations__]  # a run-up says its peaks before its channels
         assert shown == own + [name for name in names if name not in own]
         assert all(len(line) < 120 for line in lines[1:] if " reason " not in line), type(result).__name__
-        assert str(result) == repr(result)
+
+
+def test_a_printed_response_has_a_line_with_units_for_each_speed_torque_and_twist() -> None:
+    response = hm.simulate(build(), 0.05, estimate_error=True)
+    text = str(response)
+    summary = response["gear.torque"].summary()
+    figures = [f"{summary[name]:.6g}" for name in ("min", "max", "mean", "final")]
+    assert ["gear.torque", "[N", "m]", *figures] in [line.split() for line in text.splitlines()]
+    assert "% of the largest value" in text.splitlines()[-1]
+    assert not any(word in text for word in ("lowering", "slopes", "docs"))
+
+
+def test_a_printed_start_up_has_its_figures_with_units() -> None:
+    start = hm.start_up(build(), 0.05)
+    lines = [line.split() for line in str(start).splitlines()]
+    assert ["final", "speed", "of", "motor", "[rad/s]", f"{start.final_speed:.6g}"] in lines
+    assert any(line[:2] == ["gear", f"{start.peak_torque['gear']:.6g}"] for line in lines)
+
+
+def test_a_printed_run_up_says_its_peaks_in_micrometres_and_their_error_in_percent() -> None:
+    run = hm.run_up(jeffcott(), 0.2, estimate_error=True, accuracy=1e-2)
+    lines = str(run).splitlines()
+    assert "peak of C, 0-peak [um]" in lines[1]
+    assert lines[1].endswith("estimated error of the peak of C [%]")
+    (row,) = [line.split() for line in lines if line.startswith("disc")]
+    assert row[1] == f"{1e6 * run.peak_amplitude['disc']:.6g}"
+    assert row[-1] == f"{100.0 * run.peak_error['disc']:.6g}"
+
+
+def test_printed_modes_and_peaks_are_the_tables_of_the_command_line() -> None:
+    line = rotor_line()
+    for result, arguments in (
+        (hm.modes(build()), ("modes", "models/harmonic_drive_train.py")),
+        (hm.whirl_modes(line, 300.0), ("modes", "models/two_rotor_line.py", "--speed", "300")),
+        (hm.unbalance_response(line, np.linspace(200.0, 400.0, 21)), ("unbalance", "models/two_rotor_line.py", "--speeds", "200:400:21")),
+    ):
+        done = CliRunner().invoke(app, arguments)
+        assert done.exit_code == 0, done.output
+        drawn = [[word for word in line.split() if word not in "│┃"] for line in done.output.splitlines()]
+        first = result.tables()[0].rows[0]
+        numbers = [f"{item:.6g}" for item in first if isinstance(item, float)]
+        assert any(all(number in words for number in numbers) for words in drawn), done.output
+        assert any(all(number in row.split() for number in numbers) for row in str(result).splitlines())
 
 
 def test_a_printed_array_shows_its_size_and_range() -> None:
-    modes = hm.modes(build(), torque=50.0)
-    assert f"[ {modes.undamped[0]:.6f}" in repr(modes)
+    point = hm.torsional_campbell(build(), np.linspace(5.0, 160.0, 2), torque=50.0)
+    assert "[ 5. 160.]" in str(point)
     curve = hm.torsion(build(), largest_torque=137.0, points=11)
-    assert f"{len(curve.torque)} values, -137 to 137" in repr(curve)
+    assert f"{len(curve.torque)} values, -137 to 137" in str(curve)
 
 
 def test_a_printed_history_shows_span_and_range() -> None:
@@ -104,6 +155,7 @@ SCENE = """
 import hdrive_mbs as hm
 from own_drag import OwnDrag
 from models.harmonic_drive_train import build
+from models.jeffcott import build as jeffcott
 from models.two_rotor_line import build as rotor_line
 """
 DRAG = '''

@@ -231,3 +231,21 @@ def test_a_balanced_copy_keeps_mass_inertia_and_place() -> None:
     assert (copy.mass, copy.polar, copy.centre) == (body.mass, body.polar, (0.0, 0.0, body.centre[2]))
     assert copy.transverse == pytest.approx(body.transverse, rel=1e-15)
     assert copy.static_unbalance == copy.product_unbalance == 0.0
+
+
+@pytest.mark.parametrize(("psi", "theta"), [(1e-3, 0.0), (0.0, 1e-3), (1e-3, -2e-3)])
+def test_a_torque_on_the_spin_acts_about_an_axis_that_leans_with_psi_and_not_with_theta(psi: float, theta: float) -> None:
+    # at rest Jt psi'' + Jp phi'' theta = 0 and Jt theta'' = 0 to first order, see docs/analyses/run_up.md; Jp phi'' = T
+    torque, transverse = 3.0, 0.0125
+    weak = hm.LinearBearing.isotropic(radial=1e-9, damping=0.0, axial=1e-9)
+    parts: dict[str, hm.Component] = {
+        "rotor": hm.Rotor(mass=1.0, polar_inertia=0.02, transverse_inertia=transverse),
+        "bearing": hm.Bearing(law=weak),
+        "drive": hm.DriveTorque(characteristic=lambda speed: torque + 0.0 * speed),
+    }
+    scene = hm.Scene(name="tilted", parts=parts, connections=[("bearing", "rotor"), ("drive", "rotor")])
+    network = scene.network()
+    still = dict.fromkeys((body.name for body in network.bodies), 0.0)
+    found = network.accelerations(network.moment(0.0, still | {"rotor.psi": psi, "rotor.theta": theta}, still, {}))
+    assert found["rotor.psi"] == pytest.approx(-torque * theta / transverse, rel=1e-5, abs=1e-9)  # what is left out: tilts squared
+    assert found["rotor.theta"] == pytest.approx(0.0, abs=1e-9)

@@ -51,6 +51,10 @@ LAW = hm.LinearBearing.isotropic(radial=1e6, damping=0.0)
         ),
         (r"Rotor\.eccentricity = -1e-05 m: must be at least 0\.0 m", lambda: DISC.replacing(eccentricity=-1e-5)),
         (r"Rotor\.disc diameter = 0: must be greater than 0", lambda: hm.Rotor.disc(diameter=0.0, thickness=0.1, density=STEEL)),
+        (
+            r"Rotor\.disc eccentricity = 20 m: must be at most the radius of the disc, 0\.05 m\..* 20e-6 m",
+            lambda: hm.Rotor.disc(diameter=0.1, thickness=0.1, density=STEEL, eccentricity=20.0),
+        ),
         (r"Rotor\.disc thickness = nan", lambda: hm.Rotor.disc(diameter=0.1, thickness=math.nan, density=STEEL)),
         (
             r"Rotor\.disc bore = 0\.2 m: .*less than the diameter of 0\.1 m",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import functools
 import math
 import pickle
 from collections.abc import Callable
@@ -169,7 +170,7 @@ def test_laws_parts_and_effects_are_replaced_whole() -> None:
         ("motor.characteristic", 5.0, ParameterError, r"Motor\.characteristic = 5: must be a law .* or a Python function"),
         ("motor.characteristic", hm.AsynchronousMotor, ParameterError, r"is a class; give an object of it: AsynchronousMotor\(\.\.\.\)"),
         ("gear.stiffness", 3.2e4, ParameterError, r"HarmonicDrive\.stiffness = 32000: must be a law"),
-        ("gear.stiffness", hm.Inertia(inertia=1.0), ParameterError, r"must be a Python function"),
+        ("gear.stiffness", hm.Inertia(inertia=1.0), ParameterError, r"must be a law of the library or a Python function"),
         ("gear.damping_in_gap", "no", ParameterError, r"damping_in_gap = 'no': must be True or False"),
         ("gear.output_sense", "backwards", ParameterError, r"must be 'opposite' or 'same'"),
         ("gear.output_sense", 1, ParameterError, r"must be a text"),
@@ -341,6 +342,54 @@ def test_values_are_given_by_name_and_unknown_names_are_refused() -> None:
         hm.Load(inertia=1.0)  # type: ignore[call-arg]
     with pytest.raises(PlaceError, match=r"No field 'mass'\. Inertia has: inertia, viscous"):
         hm.Inertia(inertia=1.0).replacing(mass=2.0)
+
+
+def test_a_name_spelt_wrongly_is_answered_with_the_right_one() -> None:
+    with pytest.raises(KeywordError, match=r"No field 'inertai'\. Motor has: .*\. Did you mean 'inertia'\?$"):
+        hm.Motor(inertai=1e-4, characteristic=lambda speed: 0.0 * speed)  # type: ignore[call-arg]
+    with pytest.raises(AttributeError, match=r"^module 'hdrive_mbs' has no attribute 'HarmonicDrve'\. Did you mean 'HarmonicDrive'\?$"):
+        hm.HarmonicDrve  # type: ignore[attr-defined]  # noqa: B018
+    with pytest.raises(AttributeError, match=r"^module 'hdrive_mbs' has no attribute 'xyzzy'\.$"):
+        hm.xyzzy  # type: ignore[attr-defined]  # noqa: B018
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (
+            lambda: hm.HarmonicDrive(ratio=100.0, stiffness=lambda x, y: x * y),
+            r"^HarmonicDrive\.stiffness = .* takes \(x, y\) .* \(twist\)\.",
+        ),
+        (
+            lambda: hm.Load(inertia=1.0, torque=lambda a, w: a * w),
+            r"^Load\.torque = .* \(a, w\) but is called with \(time\) or \(time, angle, sp",
+        ),
+        (lambda: hm.Motor(inertia=1.0, characteristic=lambda: 1.0), r"^Motor\.characteristic = .* \(\) .* \(speed\) or \(time, speed\)"),
+        (lambda: hm.DriveTorque(characteristic=lambda a, b, c: 1.0), r"^DriveTorque\.characteristic = .* functools\.partial"),
+        (lambda: hm.IdealSpeedMotor(motion=lambda t, a: t), r"^IdealSpeedMotor\.motion = .* is called with \(time\)"),
+    ],
+)
+def test_a_function_that_cannot_be_called_as_a_law_is_refused_where_it_is_given(make: Callable[[], object], message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        make()
+
+
+def test_a_function_with_further_arguments_that_have_values_is_a_law() -> None:
+    gear = hm.HarmonicDrive(ratio=100.0, stiffness=lambda twist, stiffness=2e4: stiffness * twist)
+    assert gear.law.torque(1e-3) == 20.0
+    assert hm.Motor(inertia=1.0, characteristic=functools.partial(lambda gain, speed: -gain * speed, 2.0)) is not None
+
+
+def test_an_effect_in_the_place_of_a_law_is_answered_with_how_effects_are_added() -> None:
+    arm = hm.EccentricLoad(mass=2.0, radius=0.3)
+    message = (
+        r"^Load\.torque = EccentricLoad\(.*\): must be a law .* kind 'effect': scene\.with_effect\(EccentricLoad\(\.\.\.\), at=\"\.\.\.\"\)"
+    )
+    with pytest.raises(ParameterError, match=message):
+        hm.Load(inertia=1.0, torque=arm)  # type: ignore[arg-type]
+    load = hm.Load(inertia=1.0, torque=hm.ConstantTorque(value=0.0))
+    scene = hm.Scene(name="arm", parts={"arm": load}, connections=[]).with_effect(arm, at="arm")  # as it says
+    assert [placed.at for placed in scene.effects] == ["arm"]
 
 
 def test_parts_are_copied_and_pickled_whole() -> None:

@@ -69,8 +69,16 @@ def test_a_law_that_gives_no_number_ends_the_run() -> None:
 
 def test_a_step_that_is_too_long_for_a_stiff_shaft_is_noticed() -> None:
     # the fastest mode of the train is at about 8e3 rad/s; RK4 is stable up to h w = 2.83
-    with pytest.raises(SimulationError, match=r"diverged: values are not finite .* with RungeKutta4\(step=0\.001 s\)\. Use a smaller step"):
+    with pytest.raises(SimulationError, match=r"RungeKutta4\.step = 0\.001 s is beyond its limit of stability, 0\.000358 s"):
         hm.simulate(train(), 0.5, solver=hm.RungeKutta4(step=1e-3))
+
+
+def test_a_law_that_gets_stiffer_on_the_way_makes_a_step_diverge_that_was_stable_at_the_start() -> None:
+    # at the start the gear is in its gap, without stiffness, and the limit is 3.58e-4 s; beyond the gap it is shorter
+    with pytest.raises(
+        SimulationError, match=r"diverged: values are not finite .* with RungeKutta4\(step=0\.00034 s\)\. Use a smaller step"
+    ):
+        hm.simulate(train(), 0.5, solver=hm.RungeKutta4(step=3.4e-4))
 
 
 # -- arguments --------------------------------------------------------------------------------------------

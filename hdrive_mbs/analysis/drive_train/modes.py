@@ -10,11 +10,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
+from hdrive_mbs.analysis.decay_note import decay_note
 from hdrive_mbs.analysis.operating_point import OperatingPoint, at_speed, operating_point, with_load
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.whirl.spinning_line import without_unbalance
 from hdrive_mbs.engine.assembly import Assembly, assemble
 from hdrive_mbs.engine.linearisation import LinearSystem, linearise
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
@@ -63,6 +65,24 @@ class Modes(Result):
     def stable(self) -> bool:
         """Whether no motion grows."""
         return bool(np.all(self.damping_ratio >= -1e-9) and np.all(self.decay_rates >= -1e-6))
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """Undamped modes with their shapes, and damped ones."""
+        rows = []
+        for k, frequency in enumerate(self.undamped.tolist()):
+            shape = ", ".join(f"{body} {self.shapes[i, k]:+.3f}" for i, body in enumerate(self.bodies))
+            rows.append((str(k + 1), frequency, frequency / (2.0 * np.pi), shape))
+        heads = ("mode", "[rad/s]", "[Hz]", "shape: angles, true sense")
+        damped = zip(self.damped.tolist(), self.damping_ratio.tolist(), strict=True)
+        return (
+            PrintedTable(title="undamped", heads=heads, rows=tuple(rows)),
+            PrintedTable(
+                title="damped",
+                heads=("mode", "[rad/s]", "damping ratio"),
+                rows=tuple((str(k), *row) for k, row in enumerate(damped, start=1)),
+                notes=decay_note(self.decay_rates),
+            ),
+        )
 
     def columns(self) -> dict[str, np.ndarray]:
         rows = max(len(self.undamped), len(self.damped))

@@ -9,11 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hdrive_mbs.analysis.coarse_step import warn_of
 from hdrive_mbs.analysis.drive_train.elastic_law import elastic_laws
-from hdrive_mbs.analysis.time_response import Response, simulate
+from hdrive_mbs.analysis.time_response import Response, integrate
 from hdrive_mbs.components.motor import Motor
 from hdrive_mbs.engine.solvers import Solver
 from hdrive_mbs.errors import SceneError
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray, TimeHistory
 
@@ -52,6 +54,21 @@ class StartUp(Response):
     peak_motor_torque: float
     take_up_time: Mapping[str, float]
 
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """The figures of the start: of the motor, and of each connection."""
+        figures = {
+            f"final speed of {self.motor} [rad/s]": self.final_speed,
+            "rise time to 95 % of it [s]": self.rise_time,
+            "overshoot [%]": 100.0 * self.overshoot,
+            "peak of the motor's torque [N m]": self.peak_motor_torque,
+        }
+        rows = [
+            (name, torque, self.peak_time[name], self.final_torque[name], self.take_up_time.get(name, "-"))
+            for name, torque in self.peak_torque.items()
+        ]
+        heads = ("connection", "peak torque [N m]", "at [s]", "final torque [N m]", "carries torque from [s]")
+        return (PrintedTable(heads=("figure", "value"), rows=tuple(figures.items())), PrintedTable(heads=heads, rows=tuple(rows)))
+
 
 def start_up(
     scene: Scene,
@@ -72,7 +89,8 @@ def start_up(
     not count.
     """
     name = _motor(scene, motor)
-    response = simulate(scene, duration, solver=solver, estimate_error=estimate_error, progress=progress, cancel=cancel)
+    response = integrate(scene, duration, solver=solver, estimate_error=estimate_error, progress=progress, cancel=cancel)
+    warn_of(scene.name, response.status)
     speed = response[f"{name}.speed"]
     end = float(response.times[-1])
     final = _mean(speed, end * (1.0 - LAST_PART), end)
@@ -148,11 +166,11 @@ def _crossing(history: TimeHistory, k: int, level: float) -> float:
 
 
 def _status(status: str, final: float, before: float) -> str:
-    if status != "complete":
+    if not status.startswith("complete"):
         return status
     if final == 0.0:
-        return "complete; the motor does not start"
+        return f"{status}; the motor does not start"
     change = abs(final - before) / abs(final)
     if change > STEADY:
-        return f"complete; not steady: the mean speed still changes by {100.0 * change:.2g} % in the last tenth, give a longer duration"
-    return "complete"
+        return f"{status}; not steady: the mean speed still changes by {100.0 * change:.2g} % in the last tenth, give a longer duration"
+    return status

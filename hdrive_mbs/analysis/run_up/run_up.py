@@ -10,19 +10,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hdrive_mbs.analysis.coarse_step import warn_of
 from hdrive_mbs.analysis.run_up.rest_positions import FreeLine, RestPositions, without_drive
 from hdrive_mbs.analysis.run_up.run_up_figures import LineFigures, line_figures
 from hdrive_mbs.analysis.run_up.run_up_start import Start, oil_films, starts
 from hdrive_mbs.analysis.run_up.run_up_status import status
 from hdrive_mbs.analysis.run_up.run_up_step import NEAR, choose_step, fastest_speeds, reference_speed
 from hdrive_mbs.analysis.run_up.speed_peaks import SpeedPeak
-from hdrive_mbs.analysis.time_response import Response, simulate
+from hdrive_mbs.analysis.time_response import Response, integrate
 from hdrive_mbs.analysis.unbalance.synchronous_whirl import CriticalSpeed, critical_speeds
 from hdrive_mbs.analysis.whirl.rotor_places import reference_shaft, rotor_masses, spin_ratios
 from hdrive_mbs.engine.solvers import Solver, Trapezoidal
 from hdrive_mbs.errors import AnalysisError, ParameterError, SimulationError, unknown_place
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.network.rigid_mass import NOTHING, RigidMass
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray
 
@@ -79,6 +81,26 @@ class RunUp(Response):
     driven_speed: float
     static_deflection: Mapping[str, FloatArray]
     peak_error: Mapping[str, float]
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """Peaks of each rotor, the final speed and the critical speeds."""
+        heads = ["rotor", "peak of C, 0-peak [um]", "at [rad/s]", "at [s]", "peak of P, 0-peak [um]"]
+        rows = [
+            [
+                rotor,
+                1e6 * self.peak_amplitude[rotor],
+                self.peak_speed[rotor],
+                self.peak_time[rotor],
+                1e6 * self.mass_centre_amplitude[rotor],
+                *([100.0 * self.peak_error[rotor]] if self.peak_error else []),
+            ]
+            for rotor in self.rotors
+        ]
+        heads += ["estimated error of the peak of C [%]"] if self.peak_error else []
+        criticals = ", ".join(f"{speed:.5g}" for speed in self.critical_speeds) or "none met"
+        criticals = str(self.settings.get("critical_speeds", criticals))
+        notes = (f"final speed {self.final_speed:.6g} rad/s; undamped critical speeds [rad/s]: {criticals}",)
+        return (PrintedTable(heads=tuple(heads), rows=tuple(map(tuple, rows)), notes=notes),)
 
     def peaks(self, rotor: str) -> tuple[SpeedPeak, ...]:
         """Local maxima of the whirl of C over the run, in the order of time; beats after a critical speed are not counted."""
@@ -190,7 +212,7 @@ def _run(
     except AnalysisError:
         static = RestPositions.none(tuple(masses))
         notes.append("there is no static deflection, so whirl counts from the axis")
-    reason = "solver given"
+    reason, given = "solver given", solver is not None
     if solver is None:
         moving = {body.name for body in network.bodies if body.lateral}
         whirling = {name: speed for name, speed in fastest.items() if f"{name}.x" in moving}
@@ -202,7 +224,7 @@ def _run(
     told = () if films else criticals
 
     def once(with_solver: Solver, start: Start) -> tuple[Response, LineFigures]:
-        response = simulate(
+        response = integrate(
             scene,
             duration,
             solver=with_solver,
@@ -211,6 +233,7 @@ def _run(
             sample_step=sample_step,
             progress=progress,
             cancel=cancel,
+            judged=given,
         )
         return response, line_figures(network, response, reference, masses, static.table, [item.speed for item in told])
 
@@ -227,13 +250,14 @@ def _run(
         assert failed is not None
         raise _from_rest(failed, scene, initial_speed)
     errors: dict[str, float] = {}
-    if estimate_error and response.status == "complete":
+    if estimate_error and response.status.startswith("complete"):
         finer, better = once(solver.refined(), start)
-        if finer.status == "complete":
+        if finer.status.startswith("complete"):
             errors = _errors(figures, better, 1.0 if solver.adaptive else 2.0**solver.order - 1.0)
             if figures.captured != better.captured:
                 notes.append("capture or passage depends on the step here: give a smaller accuracy")
             response, figures = finer, better
+    warn_of(scene.name, response.status, stacklevel=2)
     if not np.any(response.values[f"{reference}.speed"]):
         notes.append("nothing turns the line: give it a DriveTorque or a Motor, or an initial_speed")
     settings: dict[str, object] = {"accuracy": accuracy, "from_static": from_static, "places": tuple(masses), "step": reason}

@@ -20,9 +20,10 @@ FLAT = 0.9
 
 def status(response: Response, figures: LineFigures, criticals: Sequence[CriticalSpeed], notes: Sequence[str]) -> str:
     """``complete`` with what a reader of the peaks has to know, or why the run ended early."""
-    if response.status != "complete":
+    done, _, remark = response.status.partition("; ")
+    if done != "complete":
         return response.status
-    said, end = list(notes), float(response.times[-1])
+    said, end = [*filter(None, [remark]), *notes], float(response.times[-1])
     speeds = [item.speed for item in criticals]
     before = int(np.searchsorted(response.times, (1.0 - LAST_PART) * end, side="right"))
     if figures.balance is not None and figures.captured:

@@ -20,6 +20,7 @@ from hdrive_mbs.analysis.unbalance.unbalanced_line import DIRECTIONS, Unbalanced
 from hdrive_mbs.analysis.unbalance.whirl_orbit import WhirlOrbit, lag
 from hdrive_mbs.analysis.whirl.lateral_stability import instability
 from hdrive_mbs.errors import AnalysisError, ParameterError, unknown_place
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.progress import progress_bar
 from hdrive_mbs.scene import Scene
 
@@ -108,6 +109,12 @@ class UnbalanceResponse(Result):
             raise unknown_place("bearing", bearing, self.bearings, "This response")
         k = self.bearings.index(bearing)
         return WhirlOrbit(self.force_x[group, :, k], self.force_y[group, :, k], np.where(self.speeds < 0.0, -1.0, 1.0))
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """Peaks of each place."""
+        heads = ("place", "speed [rad/s]", "amplitude, 0-peak [m]", "half-power width [rad/s]", "quality factor")
+        rows = tuple((one.place, one.speed, one.amplitude, one.width, one.quality) for one in self.peaks)
+        return (PrintedTable(title="peaks of the unbalance response", heads=heads, rows=rows),)
 
     @property
     def peaks(self) -> tuple[ResponsePeak, ...]:

@@ -8,6 +8,7 @@ from heapq import merge
 
 import numpy as np
 
+from hdrive_mbs.analysis.decay_note import decay_note
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.whirl.line_block import BlockModel, line_blocks
 from hdrive_mbs.analysis.whirl.roots import ComplexArray, FloatArray
@@ -15,6 +16,7 @@ from hdrive_mbs.analysis.whirl.spinning_line import SpinningLine
 from hdrive_mbs.analysis.whirl.station_shapes import StationShapes
 from hdrive_mbs.analysis.whirl.whirl_kind import WhirlKinds
 from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.scene import Scene
 
 STABLE = 1e-9
@@ -61,6 +63,15 @@ class WhirlModes(Result):
     def stable(self) -> bool:
         """Whether no motion grows."""
         return bool(np.all(self.damping_ratios >= -STABLE) and np.all(self.decay_rates >= 0.0))
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """Whirl, frequency and damping of each mode."""
+        heads = ("mode", "whirl", "damped [rad/s]", "|eigenvalue| [rad/s]", "damping ratio", "log decrement")
+        numbers = (values.tolist() for values in (self.frequencies, self.natural, self.damping_ratios, self.log_decrements))
+        rows = tuple((str(k), *row) for k, row in enumerate(zip(self.whirl, *numbers, strict=True), start=1))
+        free = (f"{self.free_motions} motions are held by no spring",) if self.free_motions else ()
+        title = f"modes at {self.speed:g} rad/s"
+        return (PrintedTable(title=title, heads=heads, rows=rows, notes=(*free, *decay_note(self.decay_rates))),)
 
     def columns(self) -> dict[str, np.ndarray]:
         return {

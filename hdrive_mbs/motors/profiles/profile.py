@@ -34,7 +34,7 @@ class SpeedProfile(Described):
 class AngleFunction(SpeedProfile):
     """A plain Python function angle(time) [rad].  A scene file cannot hold it."""
 
-    function: Callable[[Value], Value] = option("angle [rad] as a function of time [s]")
+    function: Callable[[Value], Value] = option("angle [rad] as a function of time [s]", called_with=(("time",),))
 
     def angle(self, time: Value) -> Value:
         return self.function(time)
@@ -44,7 +44,7 @@ class AngleFunction(SpeedProfile):
 class SpeedFunction(SpeedProfile):
     """A plain Python function speed(time) [rad/s], without an angle.  A scene file cannot hold it."""
 
-    function: Callable[[Value], Value] = option("speed [rad/s] as a function of time [s]")
+    function: Callable[[Value], Value] = option("speed [rad/s] as a function of time [s]", called_with=(("time",),))
 
     def speed(self, time: Value) -> Value:
         return self.function(time)
