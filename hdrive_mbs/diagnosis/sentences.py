@@ -24,6 +24,8 @@ LEFT = (
     "What is left is noise by the verdict: no place and no part of the operating range is named,"
     " for those that fit noise best mean nothing (the JSON has them)."
 )
+CERTAIN, EXCLUDED = 0.9, 0.01
+"""Probabilities of a place from which a gap lies there, and up to which it does not."""
 FAR = 3.0
 """Standard deviations of its tolerance beyond which a parameter that is not claimed is told beside the verdict."""
 SIGMA = (
@@ -87,8 +89,18 @@ def inexact(diagnosis: Diagnosis) -> str:
     what = "the law" if len(diagnosis.causes) == 1 else "one of the laws"
     return (
         f"What is claimed leaves {digits(gap.effect.value / gap.floor, 3)} times the noise: {what} is not exact,"
-        " or there is another cause beside it. Look at what is left before you trust the identified values."
+        f" or there is another cause beside it. Look at what is left before you trust the identified values.{_elsewhere(diagnosis)}"
     )
+
+
+def _elsewhere(diagnosis: Diagnosis) -> str:
+    """A warning where the gap lies at another place than all that is claimed."""
+    at = {cause.at.partition(".")[0] for cause in diagnosis.causes}
+    own = max((place.probability for place in diagnosis.where if place.at.partition(".")[0] in at), default=0.0)
+    first = diagnosis.where[0] if diagnosis.where else None
+    if first is None or first.at == NOWHERE or first.probability < CERTAIN or own > EXCLUDED:
+        return ""
+    return f" By its place the gap lies at {first.at}, not at {listed(sorted(at))}: a cause there is likelier than what is claimed."
 
 
 def gap_sentences(diagnosis: Diagnosis) -> tuple[str, ...]:

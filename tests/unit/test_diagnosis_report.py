@@ -29,6 +29,21 @@ def test_a_claim_that_leaves_more_than_noise_says_so() -> None:
         assert ("not exact" in report_text(again)) == bool(said)
 
 
+@pytest.mark.parametrize(
+    ("chances", "contradicts"), [((0.99, 0.004), True), ((0.95, 0.05), False), ((0.6, 0.004), False), ((0.004, 0.99), False)]
+)
+def test_a_claim_that_is_not_exact_says_where_its_place_is_excluded(chances: tuple[float, float], contradicts: bool) -> None:
+    """Mesh friction that takes three quarters of a gap at the motor, say, because nothing else was tried."""
+    found = SAMPLES["effect"]()
+    [cause] = found.causes
+    places = sorted(zip(("motor", f"{cause.at}.law"), chances, strict=True), key=lambda item: -item[1])
+    where = tuple(Place(at=at, probability=chance, gain=9.0, share=0.5) for at, chance in places)
+    again = dataclasses.replace(found, gaps=diagnosis_samples.gaps(34.2, 28.1, 27.04), where=where)
+    assert cause.at != "motor"
+    assert (f"the gap lies at motor, not at {cause.at}" in sentences.inexact(again)) == contradicts
+    assert "the gap lies at" not in sentences.inexact(dataclasses.replace(again, gaps=diagnosis_samples.gaps(34.2, 28.1, 1.2)))
+
+
 def test_a_place_says_what_explains_the_gap_there() -> None:
     said = [
         sentences.where(Place(at=at, probability=0.5, gain=9.0, share=share, parameter=parameter))
