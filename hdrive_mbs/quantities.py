@@ -15,6 +15,7 @@ from functools import cache
 from typing import Any, ClassVar, Self
 from weakref import WeakKeyDictionary
 
+from hdrive_mbs.call_arguments import cannot_be_called
 from hdrive_mbs.errors import KeywordError, ParameterError, unknown_place
 
 
@@ -206,7 +207,9 @@ class Described:
                 self._check_field(field.name, value, quantity)
             else:
                 _check_option(f"{type(self).__name__}.{field.name}", value, str(field.type), field.metadata.get("doc", ""))
-                _check_call(f"{type(self).__name__}.{field.name}", value, field.metadata.get("called_with", ()))
+                wrong = "" if isinstance(value, Described) else cannot_be_called(value, field.metadata.get("called_with", ()))
+                if wrong:
+                    raise ParameterError(f"{type(self).__name__}.{field.name} = {readable(value, None)}: {wrong}")
         self.check()
 
     def _check_field(self, name: str, value: Any, quantity: Quantity) -> None:
@@ -366,27 +369,6 @@ def _instead(value: Any) -> str:
         return ""
     use = value._use.format(name=type(value).__name__)
     return f" {type(value).__name__} is of the kind {value._kind!r}{': ' if use else ''}{use}."
-
-
-def _check_call(where: str, value: Any, called_with: tuple[tuple[str, ...], ...]) -> None:
-    """Refuse a function that cannot be called with any of these arguments."""
-    if not called_with or isinstance(value, Described):
-        return
-    try:
-        signature = inspect.signature(value)
-    except (TypeError, ValueError):  # one that is compiled tells nothing
-        return
-    for arguments in called_with:
-        try:
-            signature.bind(*arguments)
-            return
-        except TypeError:
-            continue
-    ways = " or ".join(f"({', '.join(arguments)})" for arguments in called_with)
-    raise ParameterError(
-        f"{where} = {readable(value, None)}: takes {signature} but is called with {ways}. Give a function of these; what else it needs "
-        "functools.partial or a default value holds."
-    )
 
 
 @cache

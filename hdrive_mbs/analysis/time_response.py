@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.analysis.coarse_step import coarse_step, warn_of
+from hdrive_mbs.analysis.initial_values import finite_number, initial_values
 from hdrive_mbs.analysis.main_channels import main_channels
 from hdrive_mbs.analysis.result import Result, write_csv
 from hdrive_mbs.analysis.stable_step import check_run, check_start
@@ -186,8 +187,8 @@ def integrate(
     judged : say in the status where the step of an implicit solver that is given is too long for what comes out
     """
     given = solver is not None
-    duration = _number("duration", duration, "s")
-    sample_step = _number("sample_step", sample_step, "s")
+    duration = finite_number("duration", duration, "s")
+    sample_step = finite_number("sample_step", sample_step, "s")
     if duration <= 0.0:
         raise ParameterError(f"duration = {duration:g} s: must be greater than 0 s.")
     if sample_step < 0.0:
@@ -196,7 +197,7 @@ def integrate(
     if solver is None:
         from hdrive_mbs.analysis.default_solver import default_solver  # which itself runs the turning part alone
 
-        solver = default_solver(network, duration, _number("initial_speed", initial_speed, "rad/s"))
+        solver = default_solver(network, duration, finite_number("initial_speed", initial_speed, "rad/s"))
     if not isinstance(solver, Solver):
         raise ParameterError(f"solver = {solver!r}: must be a Solver, for instance DormandPrince() or RungeKutta4(step=1e-5).")
     solver = for_tables(solver, scene, duration)
@@ -233,60 +234,6 @@ def channel_of(body: Body, kind: str) -> str:
     if body.lateral:
         return body.name + {"angle": "", "speed": "_rate", "acceleration": "_acceleration"}[kind]
     return f"{body.name}.{kind}"
-
-
-def _number(name: str, value: Any, unit: str) -> float:
-    try:
-        number = float("x" if isinstance(value, str) else value)
-    except (TypeError, ValueError):
-        raise ParameterError(f"{name} = {value!r}: must be a number, in {unit}.") from None
-    if not np.isfinite(number):
-        raise ParameterError(f"{name} = {value} {unit}: must be a finite number.")
-    return number
-
-
-def initial_values(network: Network, speed: float, given: Mapping[str, float]) -> dict[str, dict[str, float]]:
-    """Forward angles, speeds and states at t = 0."""
-    speed = _number("initial_speed", speed, "rad/s")
-    angles = {body.name: 0.0 for body in network.bodies}
-    speeds = {body.name: body.sense * body.ratio * speed for body in network.bodies}
-    states = {state.name: state.initial for state in network.states}
-    bodies = {body.name: body for body in network.bodies}
-    units = {"angle": "rad", "speed": "rad/s"} | {state.name: state.unit for state in network.states}
-    shown: dict[str, float] = {}
-    hidden = {body.shown_as + ending: body for body in network.bodies if body.shown_as for ending in ("", "_rate")}
-    for name, given_value in given.items():
-        value = _number(f"initial value of {name}", given_value, units.get(name.rpartition(".")[2], units.get(name, "SI units")))
-        place, _, quantity = name.rpartition(".")
-        body = bodies.get(network.places.get(place, place))
-        if name in states:
-            states[name] = value
-        elif body is not None and quantity == "angle":
-            angles[body.name] = body.sense * value
-        elif body is not None and quantity == "speed":
-            speeds[body.name] = body.sense * value
-        elif name in bodies and bodies[name].lateral:
-            angles[name] = value
-        elif name.removesuffix("_rate") in bodies and bodies[name.removesuffix("_rate")].lateral:
-            speeds[name.removesuffix("_rate")] = value
-        elif name in hidden:
-            shown[name] = value
-        else:
-            known = [body.shown_as or body.name if body.lateral else f"{body.name}.angle/.speed" for body in network.bodies] + list(states)
-            raise unknown_place("initial value", name, known)
-    for body in network.bodies:
-        for ending, values in (("", angles), ("_rate", speeds)):
-            if body.shown_as and f"{body.name}{ending}" not in given:
-                values[body.name] = _hidden_value(network, body, values, shown.get(f"{body.shown_as}{ending}", 0.0))
-    return {"angles": angles, "speeds": speeds, "states": states}
-
-
-def _hidden_value(network: Network, body: Body, values: Mapping[str, float], wanted: float) -> float:
-    """Value of a coordinate at which the displacement that stands for it is the wanted one."""
-    channel = next(channel for channel in network.channels if channel.name == body.shown_as)
-    assert channel.factors is not None
-    rest = sum(factor * values[name] for name, factor in channel.factors.items() if name != body.name)
-    return (wanted - rest) / channel.factors[body.name]
 
 
 def _thinned(raw: RawRun, sample_step: float) -> RawRun:

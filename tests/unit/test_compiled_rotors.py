@@ -10,7 +10,8 @@ import numpy.typing as npt
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.time_response import channel_of, initial_values
+from hdrive_mbs.analysis.initial_values import initial_values
+from hdrive_mbs.analysis.time_response import channel_of
 from hdrive_mbs.compiled.constant_mass import ConstantMass
 from hdrive_mbs.compiled.idle_coordinates import idle_coordinates, without_idle
 from hdrive_mbs.compiled.line import CompiledLine, CompiledRun

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.time_response import initial_values
+from hdrive_mbs.analysis.initial_values import initial_values
 from hdrive_mbs.engine.assembly import assemble
 from hdrive_mbs.engine.simulation import run
 from hdrive_mbs.errors import HdriveError, ParameterError, PlaceError, SimulationError

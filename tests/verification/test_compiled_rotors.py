@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.analysis.time_response import channel_of, initial_values
+from hdrive_mbs.analysis.initial_values import initial_values
+from hdrive_mbs.analysis.time_response import channel_of
 from hdrive_mbs.compiled.idle_coordinates import without_idle
 from hdrive_mbs.compiled.line import CompiledLine
 from hdrive_mbs.compiled.step_limit import longest_step

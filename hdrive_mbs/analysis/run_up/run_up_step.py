@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hdrive_mbs.analysis.time_response import initial_values
+from hdrive_mbs.analysis.initial_values import initial_values
 from hdrive_mbs.analysis.unbalance.synchronous_whirl import CriticalSpeed
 from hdrive_mbs.engine.assembly import LoweringWarning, assemble
 from hdrive_mbs.engine.simulation import run
