@@ -12,6 +12,7 @@ import numpy as np
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.trial import FloatArray, Trial
 from hdrive_mbs.errors import ParameterError, RecordError, unknown_place
+from hdrive_mbs.network.network import Network
 from hdrive_mbs.records.record import Record
 from hdrive_mbs.scene import Scene
 
@@ -84,10 +85,7 @@ class Bench:
             for path in item.paths:
                 if path not in known:
                     raise unknown_place(f"path of {name!r}", path, known, "This scene")
-        shown = self.scene.network().channels
-        channels = {channel.name for channel in shown} | {
-            f"{channel.name}_acceleration" for channel in shown if channel.factors is not None
-        }
+        channels = units_of(self.scene.network())
         for column, measured in self.measured.items():
             if measured.channel not in channels:
                 raise unknown_place(f"channel of column {column!r}", measured.channel, channels, "This scene")
@@ -170,17 +168,22 @@ class Bench:
                 f"Record {record.name!r} has no column {name!r}, which {'drives the scene' if missing else 'the bench measures'}."
                 f" It has: {', '.join(record.channels)}."
             )
-        shown = self.scene.network().channels
-        units = {channel.name: channel.unit for channel in shown}
-        units |= {f"{channel.name}_acceleration": f"{channel.unit}/s^2" for channel in shown if channel.factors is not None}
+        units = units_of(self.scene.network())
         for name, item in self.measured.items():
             wanted = units.get(item.channel)
             if name in found and wanted is not None and record.channels[name].unit != wanted:
                 raise RecordError(
-                    f"Record {record.name!r}: column {name!r} is in {record.channels[name].unit}, but {item.channel!r}, which it measures,"
-                    f" is in {wanted}. Correct the unit when reading: units={{{name!r}: ...}}."
+                    f"Record {record.name!r}: column {name!r} is in {record.channels[name].unit_as_read}, but {item.channel!r}, which it"
+                    f" measures, is in {wanted}. Correct the unit when reading: units={{{name!r}: ...}}."
                 )
         return found
+
+
+def units_of(network: Network) -> dict[str, str]:
+    """Unit of every channel of a run."""
+    units = {channel.name: channel.unit for channel in network.channels}
+    shaken = {f"{c.name}_acceleration": f"{c.unit}/s^2" for c in network.channels if c.factors is not None}
+    return units | shaken
 
 
 def even_step(record: Record) -> float:

@@ -13,16 +13,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.diagnosis.bench import Bench
+from hdrive_mbs.diagnosis.bench import Bench, units_of
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.scale_checks import check_scale
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import ParameterError, RecordError, UnitError, unknown_place
-from hdrive_mbs.network.network import Network
 from hdrive_mbs.quantities import Described, Quantity
-from hdrive_mbs.records.measurement import Measurement
 from hdrive_mbs.records.record import Record
 
 FloatArray = npt.NDArray[np.float64]
@@ -51,9 +49,6 @@ def check_records(bench: Bench, records: Sequence[Record]) -> None:
         raise ParameterError(f"Two records are named {twice[0]!r}; give each its own name, like record.replacing(name='...').")
     for record in records:
         record.checked()
-        for name in bench.measured:
-            if name in record.channels:
-                _check_measured(bench, record, name)
         for name in bench.inputs:
             if name in record.channels:
                 _check_input(bench, record, name)
@@ -77,29 +72,6 @@ def _check_bench(bench: Bench) -> None:
                 raise unknown_place(f"parameter of the group {group!r}", name, bench.knowledge, "The knowledge of this bench")
 
 
-def _units(network: Network) -> dict[str, str]:
-    """Unit of every channel of a run."""
-    units = {channel.name: channel.unit for channel in network.channels}
-    shaken = {f"{c.name}_acceleration": f"{c.unit}/s^2" for c in network.channels if c.factors is not None}
-    return units | shaken
-
-
-def _check_measured(bench: Bench, record: Record, name: str) -> None:
-    wanted = _units(bench.scene.network()).get(bench.measured[name].channel)
-    column = record.channels[name]
-    if wanted is not None and column.unit != wanted:
-        raise RecordError(
-            f"Record {record.name!r}: column {name!r} is in {_written(column)}, but {bench.measured[name].channel!r}, which it measures,"
-            f" is in {wanted}. Correct the unit when reading: units={{{name!r}: ...}}."
-        )
-
-
-def _written(column: Measurement) -> str:
-    """Unit of a column as it was written, with what became of it."""
-    shown = column.unit if column.unit != "1" else "no unit (1)"
-    return shown if column.given in ("", column.unit) else f"{column.given!r}, which is read as {shown}"
-
-
 def _check_input(bench: Bench, record: Record, name: str) -> None:
     values = record.channels[name].values
     bad = ~np.isfinite(values)
@@ -114,7 +86,7 @@ def _check_input(bench: Bench, record: Record, name: str) -> None:
     column = record.channels[name]
     if unit and column.unit != unit:
         raise UnitError(
-            f"Record {record.name!r}: column {name!r} is in {_written(column)}, but {item.path}, which it drives,"
+            f"Record {record.name!r}: column {name!r} is in {column.unit_as_read}, but {item.path}, which it drives,"
             f" is in {unit}. Correct the unit when reading: units={{{name!r}: ...}}, or take another column."
         )
 
@@ -148,7 +120,7 @@ def check_trials(simulator: Simulator, factors: Sequence[Factor]) -> None:
     for trial, own in zip(simulator.trials, simulated, strict=True):
         if not own:
             continue  # what cannot be run at all is said by the first fit
-        units = _units(trial.scene.network())
+        units = units_of(trial.scene.network())
         for column in trial.columns:
             _check_alive(trial, column, own[column], units)
             check_scale(trial, column, own[column], units.get(trial.measured[column].channel, ""))

@@ -43,6 +43,12 @@ class Measurement:
             if size is not None and not (math.isfinite(size) and size >= 0.0):
                 raise ParameterError(f"Channel {self.name!r}: {what} = {size:g} {self.unit} must be finite and at least 0 {self.unit}.")
 
+    @property
+    def unit_as_read(self) -> str:
+        """Unit, for errors: as it was written, with what became of it."""
+        shown = self.unit if self.unit != "1" else "no unit (1)"
+        return shown if self.given in ("", self.unit) else f"{self.given!r}, which is read as {shown}"
+
     def __len__(self) -> int:
         return len(self.values)
 
