@@ -30,7 +30,7 @@ STILL = 1e-8
 
 
 class CoarseStepWarning(UserWarning):
-    """The given step is too long for the motion that came out."""
+    """The step is too long for the motion that came out."""
 
 
 def coarse_step(assembly: Assembly, solver: Solver, raw: RawRun) -> str:

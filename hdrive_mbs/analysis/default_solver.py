@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eigh
 
-from hdrive_mbs.analysis.run_up.run_up_step import fastest_speeds
+from hdrive_mbs.analysis.torsional_step import OF_SPEEDS, torsional_step
+from hdrive_mbs.analysis.turning_alone import TurningAlone
 from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 from hdrive_mbs.engine.solvers import DormandPrince, Solver, Trapezoidal
 from hdrive_mbs.network.network import Network
@@ -19,18 +22,30 @@ LOWEST = 2
 """Pairs of lateral natural frequencies that count, besides the highest speed."""
 
 
-def default_solver(network: Network, duration: float, initial_speed: float) -> Solver:
+@dataclass(frozen=True)
+class ChosenSolver:
+    """A solver, and what is to be said of it (or nothing)."""
+
+    solver: Solver
+    remark: str = ""
+
+
+def default_solver(network: Network, duration: float, initial_speed: float, initial: Mapping[str, float] | None = None) -> ChosenSolver:
     """DormandPrince for what only turns; for rotor lines the implicit trapezoidal rule with (w h)^2/2 <= 1e-3.
 
-    w is the highest speed that the drive can reach, or the second lateral natural frequency at rest if that is higher.
-    The adaptive solver measures its error against the largest coordinate, which is a spin angle, and a stiff ring holds
-    its step at microseconds.  Faster motion (balls, gear teeth, shocks) needs a shorter step: give the solver.
+    w is the highest speed that the drive can reach, or the second lateral natural frequency at rest if that is higher; the
+    step is cut where a torsional vibration asks for it (torsional_step).  The adaptive solver measures its error against
+    the largest coordinate, which is a spin angle, and a stiff ring holds its step at microseconds.  Faster motion (balls,
+    gear teeth, shocks) needs a shorter step: give the solver.
     """
     if not network.is_lateral:
-        return DormandPrince()
-    fastest = max([*fastest_speeds(network, duration, initial_speed).values(), _natural(network)])
+        return ChosenSolver(DormandPrince())
+    line = TurningAlone(network, duration, initial_speed, initial)
+    fastest = max([*line.fastest().values(), _natural(network)])
     step = math.sqrt(2.0 * ACCURACY) / fastest if fastest > 0.0 else duration / 200.0
-    return Trapezoidal(step=duration / max(200, math.ceil(duration / step)), newton_tolerance=0.01 * ACCURACY)
+    step, tolerance = duration / max(200, math.ceil(duration / step)), 0.01 * ACCURACY
+    cut = torsional_step(line, step, OF_SPEEDS * ACCURACY, tolerance)
+    return ChosenSolver(Trapezoidal(step=cut.step, newton_tolerance=tolerance), cut.remark)
 
 
 def _natural(network: Network) -> float:

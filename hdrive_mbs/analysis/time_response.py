@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.analysis.coarse_step import coarse_step, warn_of
+from hdrive_mbs.analysis.default_solver import default_solver
 from hdrive_mbs.analysis.initial_values import finite_number, initial_values
 from hdrive_mbs.analysis.main_channels import main_channels
 from hdrive_mbs.analysis.result import Result, write_csv
@@ -149,8 +150,8 @@ def simulate(
     lowering : "python" runs every law as a Python callback (for comparison only)
 
     Raises SimulationError when the run diverged or stopped early, or the step of an explicit solver is beyond its limit of
-    stability; ParameterError for bad arguments.  Warns CoarseStepWarning, and says so in the status, where the given step
-    of an implicit solver is too long for the motion that comes out.
+    stability; ParameterError for bad arguments.  Warns CoarseStepWarning, and says so in the status, where the step of
+    an implicit solver is too long for the motion that comes out.
     """
     response = integrate(
         scene,
@@ -194,16 +195,15 @@ def integrate(
     if sample_step < 0.0:
         raise ParameterError(f"sample_step = {sample_step:g} s: must be at least 0 s (0 records every step of the solver).")
     network = scene.network()
+    starts = initial_values(network, initial_speed, initial or {})
+    remark = ""
     if solver is None:
-        from hdrive_mbs.analysis.default_solver import default_solver  # which itself runs the turning part alone
-
-        solver = default_solver(network, duration, finite_number("initial_speed", initial_speed, "rad/s"))
+        chosen = default_solver(network, duration, initial_speed, initial)
+        solver, remark = chosen.solver, chosen.remark
     if not isinstance(solver, Solver):
         raise ParameterError(f"solver = {solver!r}: must be a Solver, for instance DormandPrince() or RungeKutta4(step=1e-5).")
     solver = for_tables(solver, scene, duration)
     assembly = assemble(network, lowering=lowering)
-    starts = initial_values(network, initial_speed, initial or {})
-
     check_start(assembly, solver, duration, starts)
     every = 0.0 if estimate_error else sample_step  # between thin samples the interpolation would err more than the solver
 
@@ -221,7 +221,7 @@ def integrate(
             divisor = 1.0 if solver.adaptive else 2.0**solver.order - 1.0
             error = {name: value / divisor for name, value in _difference(network, raw, finer).items()}
             raw = finer
-    remark = coarse_step(assembly, used, raw) if given and judged else ""
+    remark = coarse_step(assembly, used, raw) if given and judged else remark
     raw = _thinned(raw, sample_step) if estimate_error else raw
     settings = {"duration": duration, "solver": used.describe(), "initial_speed": initial_speed, "sample_step": sample_step}
     response = _response(scene, network, assembly, raw, settings | {"initial": dict(initial or {})}, error, remark)

@@ -15,8 +15,9 @@ from scipy.special import fresnel
 
 import hdrive_mbs as hm
 from hdrive_mbs.analysis.run_up.rest_positions import FreeLine, RestPositions, rest_position
-from hdrive_mbs.analysis.run_up.run_up_step import choose_step, fastest_speeds
+from hdrive_mbs.analysis.run_up.run_up_step import choose_step
 from hdrive_mbs.analysis.run_up.speed_peaks import Whirl, speed_peaks
+from hdrive_mbs.analysis.turning_alone import TurningAlone
 from hdrive_mbs.analysis.unbalance.synchronous_whirl import CriticalSpeed, critical_speeds
 from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 from models.two_rotor_line import build
@@ -388,8 +389,8 @@ def test_a_balanced_line_has_no_excited_critical_speed() -> None:
 
 def test_the_fastest_speed_is_that_of_the_line_without_whirl() -> None:
     # w = T t/J; Newton's method stops at 1e-6
-    assert fastest_speeds(jeffcott().network(), 1.2, 0.0)["disc"] == pytest.approx(600.0, rel=1e-5)
-    assert fastest_speeds(jeffcott(holding(350.0, 1.0)).network(), 1.0, 0.0)["disc"] == pytest.approx(350.0, rel=1e-5)
+    assert TurningAlone(jeffcott().network(), 1.2, 0.0).fastest()["disc"] == pytest.approx(600.0, rel=1e-5)
+    assert TurningAlone(jeffcott(holding(350.0, 1.0)).network(), 1.0, 0.0).fastest()["disc"] == pytest.approx(350.0, rel=1e-5)
 
 
 def late(critical: float, acceleration: float) -> float:

@@ -15,9 +15,11 @@ from hdrive_mbs.analysis.run_up.rest_positions import FreeLine, RestPositions, w
 from hdrive_mbs.analysis.run_up.run_up_figures import LineFigures, line_figures
 from hdrive_mbs.analysis.run_up.run_up_start import Start, oil_films, starts
 from hdrive_mbs.analysis.run_up.run_up_status import status
-from hdrive_mbs.analysis.run_up.run_up_step import NEAR, choose_step, fastest_speeds, reference_speed
+from hdrive_mbs.analysis.run_up.run_up_step import NEAR, choose_step, reference_speed
 from hdrive_mbs.analysis.run_up.speed_peaks import SpeedPeak
 from hdrive_mbs.analysis.time_response import Response, integrate
+from hdrive_mbs.analysis.torsional_step import OF_SPEEDS, torsional_step
+from hdrive_mbs.analysis.turning_alone import TurningAlone
 from hdrive_mbs.analysis.unbalance.synchronous_whirl import CriticalSpeed, critical_speeds
 from hdrive_mbs.analysis.whirl.rotor_places import reference_shaft, rotor_masses, spin_ratios
 from hdrive_mbs.engine.solvers import Solver, Trapezoidal
@@ -127,8 +129,10 @@ def run_up(
 
     duration : s
     solver : if not given, the trapezoidal rule with the step that ``accuracy`` asks for (see ``settings``)
-    accuracy : relative error of peak amplitudes that is aimed at.  The rule is calibrated for whirl in step with the
-        spin; where balls or teeth excite at a multiple of it, and for stiff nonlinear laws, look at estimate_error
+    accuracy : relative error of peak amplitudes that is aimed at; speeds may be off by four times as much of the highest.
+        The rule is calibrated for whirl in step with the spin, and its step is cut, as far as that is affordable, where a torsional
+        vibration asks for it; where balls or teeth excite at a multiple of the spin, and for stiff nonlinear laws, look
+        at estimate_error
     from_static : start in the static deflection at the initial speed and, if the line turns, on the steady orbits of
         the linearised line; else undeflected, which rings
     initial_speed : of the reference shaft [rad/s]; if 0, that of a prescribed motion at t = 0.  A line on oil films that
@@ -202,7 +206,8 @@ def _run(
     network, masses = scene.network(), _chosen(scene, places)
     line, ratios, reference, notes = FreeLine(scene), spin_ratios(scene), reference_shaft(scene), list[str]()
     initial_speed = initial_speed or _prescribed_speed(network)
-    fastest = fastest_speeds(network, duration, initial_speed)
+    turning = TurningAlone(network, duration, initial_speed)
+    fastest = turning.fastest()
     top = reference_speed(fastest, ratios) or 1.0
     criticals: tuple[CriticalSpeed, ...] = ()
     try:
@@ -217,8 +222,10 @@ def _run(
         moving = {body.name for body in network.bodies if body.lateral}
         whirling = {name: speed for name, speed in fastest.items() if f"{name}.x" in moving}
         chosen = choose_step(whirling, ratios, criticals, duration, accuracy, max(fastest.values(), default=0.0))
-        solver = Trapezoidal(step=chosen.step, newton_tolerance=chosen.newton_tolerance)
-        reason = chosen.reason
+        cut = torsional_step(turning, chosen.step, OF_SPEEDS * accuracy, chosen.newton_tolerance)
+        solver = Trapezoidal(step=cut.step, newton_tolerance=chosen.newton_tolerance)
+        reason = "; ".join(filter(None, [chosen.reason, cut.reason]))
+        notes += [cut.remark] if cut.remark else []
 
     films = oil_films(scene)
     told = () if films else criticals

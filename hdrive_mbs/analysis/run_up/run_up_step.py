@@ -1,24 +1,15 @@
-"""The step of a run-up: how fast the line can get, which critical speeds it meets, what a step may be then."""
+"""The step of a run-up: which critical speeds it meets, at what highest speed, and what a step may be then."""
 
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from hdrive_mbs.analysis.initial_values import initial_values
 from hdrive_mbs.analysis.unbalance.synchronous_whirl import CriticalSpeed
-from hdrive_mbs.engine.assembly import LoweringWarning, assemble
-from hdrive_mbs.engine.simulation import run
-from hdrive_mbs.engine.solvers import Trapezoidal
-from hdrive_mbs.errors import SceneError, SimulationError
-from hdrive_mbs.network.network import Network
-
-STEPS = 2000
-"""Steps of the run that only turns."""
+from hdrive_mbs.errors import SceneError
 
 NEAR = 1.1
 """A critical speed up to this multiple of the highest speed is met: its resonance has begun."""
@@ -45,36 +36,6 @@ class ChosenStep:
     step: float
     newton_tolerance: float
     reason: str
-
-
-def fastest_speeds(network: Network, duration: float, initial_speed: float) -> Mapping[str, float]:
-    """Highest speed of each spin over a run [rad/s, size], of the line as it turns without lateral motion.
-
-    Whirl only takes energy from the spin, so nothing turns faster than this (but for torsional vibration).
-    Bearing friction is left out: an upper limit again.  Raises SimulationError where even this run fails.
-    """
-    turning = network.turning()
-    times = np.linspace(0.0, duration, STEPS + 1)
-    fastest = {item.name: float(np.max(np.abs(item.speed(times)))) for item in network.motions if item.name != "ground"}
-    if not turning.bodies:
-        return fastest
-    steps = STEPS
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LoweringWarning)  # the run itself says it
-        assembly = assemble(turning)
-        start = initial_values(turning, initial_speed, {})
-        while True:
-            solver = Trapezoidal(step=duration / steps, newton_tolerance=1e-6)
-            try:
-                raw = run(
-                    assembly, duration=duration, solver=solver, angles=start["angles"], speeds=start["speeds"], states=start["states"]
-                )
-                break
-            except SimulationError:
-                steps *= 10
-                if steps > 100 * STEPS:
-                    raise
-    return fastest | {name: float(np.max(np.abs(speed))) for name, speed in raw.speeds.items()}
 
 
 def choose_step(
