@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+
+import numpy as np
+
+MOST = 21
+"""Rows that a long table is printed with."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,9 +36,24 @@ class PrintedTable:
         return "\n".join([*filter(None, [self.title]), *(lines if self.rows else []), *self.notes])
 
 
+def thinned(columns: Mapping[str, np.ndarray], *, title: str = "", notes: tuple[str, ...] = ()) -> PrintedTable:
+    """Columns as a table of at most MOST rows, evenly picked, the last one among them, with a note that says so."""
+    count = min((len(values) for values in columns.values()), default=0)
+    picked = range(count) if count <= MOST else sorted({round(k * (count - 1) / (MOST - 1)) for k in range(MOST)})
+    rows = tuple(tuple(_plain(values[k]) for values in columns.values()) for k in picked)
+    left_out = () if len(rows) == count else (f"{len(rows)} of {count} rows; columns() and to_csv() have them all",)
+    return PrintedTable(title=title, heads=tuple(columns), rows=rows, notes=(*notes, *left_out))
+
+
+def _plain(value: object) -> object:
+    return value.item() if isinstance(value, np.generic) else value
+
+
 def cell(item: object) -> str:
-    """A number with six digits, anything else as it is."""
-    return f"{item:.6g}" if isinstance(item, float) else str(item)
+    """A number with six digits, a dash for none, anything else as it is."""
+    if isinstance(item, float):
+        return "-" if item != item else f"{item + 0.0:.6g}"
+    return str(item)
 
 
 def is_number(item: object) -> bool:

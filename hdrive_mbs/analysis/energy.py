@@ -18,6 +18,7 @@ from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, Stat
 from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Network
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.signals import FloatArray
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
@@ -77,6 +78,20 @@ class EnergyBalance(Result):
     def total(self) -> FloatArray:
         """Kinetic plus recoverable energy [J]: constant when nothing drives, loads or damps."""
         return self.kinetic + sum(self.stored.values(), np.zeros_like(self.kinetic))
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """What each element has done by the end of the run, and how well the balance holds."""
+        names = dict.fromkeys([*self.driven, *self.work, *self.stored, *self.dissipated])
+        groups = (self.driven, self.work, self.stored, self.dissipated)
+        rows = tuple((name, *(float(group[name][-1]) if name in group else math.nan for group in groups)) for name in names)
+        heads = ("at the end of the run", "work of its drive [J]", "taken from the bodies [J]", "stored [J]", "turned into heat [J]")
+        notes = [
+            f"kinetic energy {self.kinetic[0]:.6g} J at the start, {self.kinetic[-1]:.6g} J at the end",
+            f"largest energy residual {self.energy_error:.3g} of the largest energy, {self.energy_scale:.6g} J",
+        ]
+        if len(self.momentum):
+            notes.append(f"largest momentum residual {self.momentum_error:.3g} of the largest momentum, {self.momentum_scale:.6g} N m s")
+        return (PrintedTable(heads=heads, rows=rows, notes=tuple(notes)),)
 
     def columns(self) -> dict[str, np.ndarray]:
         table = {"time [s]": self.times, "kinetic [J]": self.kinetic}

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
-from hdrive_mbs.cli.output import print_table, write_json
+from hdrive_mbs.cli.output import print_tables, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.cli.speeds import parse_orders, parse_speeds
 
@@ -45,7 +45,7 @@ def campbell(
         save_figure(plot(result), out / "campbell")
     write_json(json, {**document(result), "origin": result.made_from()})
     if json != "-":
-        _print(chosen.name, result)
+        print_tables(chosen.name, result.status, result.tables())
 
 
 def document(result: WhirlCampbell) -> dict[str, Any]:
@@ -61,37 +61,3 @@ def document(result: WhirlCampbell) -> dict[str, Any]:
             for order, word, speed in zip(result.critical_orders, result.critical_whirl, result.critical_speeds, strict=True)
         ],
     }
-
-
-def _print(name: str, result: WhirlCampbell) -> None:
-    first, last = result.speeds[0], result.speeds[-1]
-    rows = []
-    for k, word in enumerate(result.whirl):
-        ends = [float(result.frequencies[row, k]) for row in (0, -1)]
-        ratios = [float(result.damping_ratios[row, k]) for row in (0, -1)]
-        rows.append([str(k + 1), word, *(_shown(value) for pair in zip(ends, ratios, strict=True) for value in pair)])
-    headers = ["mode", "whirl"]
-    for speed in (first, last):
-        headers += [f"at {speed:g}: damped [rad/s]", "damping ratio"]
-    print_table(f"{name}: branches ({result.status})", headers, rows)
-    table = result.critical_columns()
-    criticals = [
-        [
-            f"{table['critical speed [rad/s]'][k]:.6g}",
-            f"{table['order'][k]:g} x {table['of'][k]}",
-            str(table["mode"][k]),
-            str(table["whirl"][k]),
-            _shown(float(table["damping ratio [1]"][k])),
-            _shown(float(table["amplification 1/(2 zeta) [1]"][k])),
-            str(table["note"][k]),
-        ]
-        for k in range(len(result.critical_speeds))
-    ]
-    print_table("critical speeds", ["speed [rad/s]", "order", "mode", "whirl", "damping ratio", "amplification", "note"], criticals)
-
-
-def _shown(value: float) -> str:
-    """Six digits; "-" for what is not there, 0 for rounding."""
-    if value != value:
-        return "-"
-    return "0" if abs(value) < 1e-9 else f"{value:.6g}"

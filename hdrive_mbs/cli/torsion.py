@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
-from hdrive_mbs.cli.output import print_table, write_json
+from hdrive_mbs.cli.output import print_tables, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.errors import ParameterError
 
@@ -42,9 +42,7 @@ def torsion(
         save_figure(plot(result), out / "torsion")
     write_json(json, {"torque": result.torque, "angle": result.angle, "origin": result.made_from()})
     if json != "-":
-        pick = range(0, len(result.torque), max(1, len(result.torque) // 20))
-        rows = [[f"{result.torque[k]:.6g}", float(result.angle[k]), float(result.stiffness[k])] for k in pick]
-        print_table(f"{chosen.name}: torsion", ["torque [N m]", "angle [rad]", "stiffness [N m/rad]"], rows)
+        print_tables(chosen.name, result.status, result.tables())
 
 
 def _numbers(text: str) -> list[float]:

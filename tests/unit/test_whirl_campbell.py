@@ -295,6 +295,14 @@ def test_internal_damping_makes_forward_whirl_grow_above_the_speed_of_the_closed
     assert np.all((result.damping_ratios[:, j] < 0.0) == (result.speeds > threshold))
 
 
+def test_thresholds_are_printed_with_mode_and_frequency() -> None:
+    result = hm.campbell(internally_damped(), np.linspace(0.0, 900.0, 12), count=2)
+    (table,) = [table for table in result.tables() if table.title == "thresholds of stability"]
+    expected = zip(result.threshold_speeds, result.threshold_branches, result.threshold_frequencies, result.threshold_notes, strict=True)
+    assert table.rows == tuple((speed, branch + 1, frequency, note) for speed, branch, frequency, note in expected)
+    assert len(table.rows) > 0
+
+
 def test_an_undamped_line_has_no_thresholds_although_rounding_makes_tiny_ratios_of_both_signs() -> None:
     result = hm.campbell(two_discs(kx=1e6), SPEEDS, count=8)
     assert len(result.threshold_speeds) == 0

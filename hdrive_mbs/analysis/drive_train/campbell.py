@@ -15,6 +15,7 @@ from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.whirl.spinning_line import without_unbalance
 from hdrive_mbs.engine.assembly import assemble
 from hdrive_mbs.errors import ParameterError, unknown_place
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.progress import progress_bar
 from hdrive_mbs.scene import Scene
 
@@ -54,6 +55,21 @@ class Campbell(Result):
     critical_speeds: FloatArray
     critical_orders: tuple[int, ...]
     critical_branches: tuple[int, ...]
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """The branches at the first and the last speed, and the critical speeds."""
+        heads = ["mode"]
+        for speed in (self.speeds[0], self.speeds[-1]):
+            heads += [f"at {speed:g} rad/s: undamped [rad/s]", "damping ratio"]
+        ends = [(self.frequencies[row], self.damping_ratios[row]) for row in (0, -1)]
+        rows = tuple((str(k + 1), *(float(values[k]) for pair in ends for values in pair)) for k in range(self.frequencies.shape[1]))
+        criticals = tuple(
+            (float(speed), f"{self.order_numbers[order]:g} x {self.order_places[order]}", str(branch + 1))
+            for speed, order, branch in zip(self.critical_speeds, self.critical_orders, self.critical_branches, strict=True)
+        )
+        met = PrintedTable(title="critical speeds", heads=("speed [rad/s]", "order", "mode"), rows=criticals)
+        none = PrintedTable(heads=(), rows=(), notes=("no critical speed in this range",))
+        return (PrintedTable(title="branches", heads=tuple(heads), rows=rows), met if criticals else none)
 
     def columns(self) -> dict[str, np.ndarray]:
         table: dict[str, np.ndarray] = {"motor speed [rad/s]": self.speeds}

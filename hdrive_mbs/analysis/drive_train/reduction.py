@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -19,6 +20,7 @@ from hdrive_mbs.components.shaft import Shaft
 from hdrive_mbs.engine.assembly import assemble
 from hdrive_mbs.engine.linearisation import LinearSystem, linearise
 from hdrive_mbs.errors import AnalysisError, ParameterError
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
@@ -72,6 +74,23 @@ class Reduction(Result):
         if self.scene is None:
             raise AnalysisError("The reduction came from a file that could not hold its scene; reduce the scene again.")
         return with_rigid_shafts(self.scene)
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """Natural frequencies of both models, where the compliance is, and the verdict."""
+        modes = tuple(
+            (str(k + 1), float(full), float(self.reduced_undamped[k]), 100.0 * float(self.mode_error[k]))
+            if k < len(self.reduced_undamped)
+            else (str(k + 1), float(full), math.nan, math.nan)
+            for k, full in enumerate(self.full_undamped)
+        )
+        heads = ("mode", "full: undamped [rad/s]", "reduced: undamped [rad/s]", "difference [%]")
+        shares = self.shares
+        parts = tuple((name, value, 100.0 * shares[name]) for name, value in self.compliance.items())
+        where = f"compliance at {self.loaded} under {self.torque:.6g} N m"
+        return (
+            PrintedTable(title="natural frequencies", heads=heads, rows=modes, notes=(self.reason,)),
+            PrintedTable(title=where, heads=("connection", "compliance [rad/(N m)]", "share [%]"), rows=parts),
+        )
 
     def columns(self) -> dict[str, np.ndarray]:
         return {

@@ -16,6 +16,7 @@ from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.components.harmonic_drive import HarmonicDrive
 from hdrive_mbs.errors import AnalysisError, ParameterError, unknown_place
 from hdrive_mbs.network.network import Network
+from hdrive_mbs.printed_table import PrintedTable, thinned
 from hdrive_mbs.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
@@ -52,6 +53,14 @@ class TorsionCurve(Result):
     def lost_motion(self) -> float:
         """Width of the curve at zero torque [rad]."""
         return self.gap[1] - self.gap[0]
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """The curve, lost motion and loss."""
+        notes = [f"lost motion {self.lost_motion:.6g} rad"]
+        notes += [f"loss of a cycle {self.loss:.6g} J"] if self.loss else []
+        corners = zip(self.corner_torque, self.corner_angle, strict=True)
+        notes += [f"stiffness changes at {torque:.6g} N m, {angle:.6g} rad" for torque, angle in corners]
+        return (thinned(self.columns(), title=f"twist of {self.measured}", notes=tuple(notes)),)
 
     def columns(self) -> dict[str, np.ndarray]:
         table = {"torque [N m]": self.torque, "angle [rad]": self.angle, "tangent stiffness [N m/rad]": self.stiffness}

@@ -13,6 +13,7 @@ from hdrive_mbs.analysis.signals.shaft_angle import TURN, shaft_history
 from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.analysis.whirl.rotor_places import rotor_masses, spin_ratios
 from hdrive_mbs.errors import AnalysisError, ParameterError, unknown_place
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.signals import FloatArray, TimeHistory
 
 PER_REVOLUTION = 96
@@ -71,6 +72,21 @@ class Orbit(Result):
     def radius(self) -> FloatArray:
         """Distance from the origin [m]."""
         return np.hypot(self.x, self.y)
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """Size, shape and sense of the path."""
+        rows = (
+            (f"largest distance from the origin [{self.unit}]", float(np.max(self.radius))),
+            (f"forward circle in step with the spin, 0-peak [{self.unit}]", self.forward),
+            (f"backward circle in step with the spin, 0-peak [{self.unit}]", self.backward),
+            (f"major axis of the ellipse of both, 0-peak [{self.unit}]", self.major),
+            (f"minor axis, 0-peak [{self.unit}]", self.minor),
+            ("inclination of the major axis, from x towards y [rad]", self.inclination),
+            ("roundness, 1 for forward circles", self.roundness),
+            ("precession", self.precession),
+        )
+        title = f"{self.centre} centre of {self.place} about {self.about}, {self.times[0]:.6g} to {self.times[-1]:.6g} s"
+        return (PrintedTable(title=title, heads=("figure", "value"), rows=rows),)
 
     def columns(self) -> dict[str, np.ndarray]:
         return {

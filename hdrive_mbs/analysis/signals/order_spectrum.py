@@ -14,6 +14,7 @@ from hdrive_mbs.analysis.signals.spectrum import chosen_history, chosen_span, fo
 from hdrive_mbs.analysis.signals.windows import line_amplitudes, local_maxima, window_named
 from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.errors import AnalysisError
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.signals import FloatArray, TimeHistory
 
 
@@ -67,6 +68,16 @@ class OrderSpectrum(Result):
         """
         found = local_maxima(self.amplitude, window_named(self.window), count, above)
         return tuple(OrderPeak(position * self.resolution, height) for position, height in found)
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """The largest orders."""
+        rows = tuple((peak.order, peak.amplitude) for peak in self.peaks())
+        notes = (
+            f"mean {self.mean:.6g} {self.unit}; {self.revolutions:.4g} revolutions from {self.start:g} to {self.end:g} s at "
+            f"{self.slowest:.4g} to {self.fastest:.4g} rad/s, lines {self.resolution:.4g} orders apart, {self.window}",
+        )
+        heads = (f"order of {self.against}", f"amplitude 0-peak [{self.unit}]")
+        return (PrintedTable(title=f"largest orders of {self.channel}", heads=heads, rows=rows, notes=notes),)
 
     def columns(self) -> dict[str, np.ndarray]:
         return {

@@ -15,6 +15,7 @@ from hdrive_mbs.analysis.signals.spectrum import chosen_span
 from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.analysis.unbalance.whirl_orbit import lag
 from hdrive_mbs.errors import AnalysisError, ParameterError, unknown_place
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.signals import FloatArray, TimeHistory
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -81,6 +82,16 @@ class OrderTracking(Result):
         if name not in self.tracks:
             raise unknown_place("track", name, self.tracks, "This order tracking")
         return self.tracks.index(name)
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """Where each order is largest."""
+        sizes = np.abs(self.amplitudes)
+        rows = []
+        for k, name in enumerate(self.tracks):
+            at = int(np.argmax(sizes[:, k]))
+            rows.append((name, float(sizes[at, k]), float(self.speeds[at]), float(self.times[at]), float(self._lags(k)[at])))
+        heads = ("order", f"largest amplitude 0-peak [{self.unit}]", "at speed [rad/s]", "time [s]", "lag [rad]")
+        return (PrintedTable(title=f"orders of {self.reference} in {self.channel}", heads=heads, rows=tuple(rows)),)
 
     def columns(self) -> dict[str, np.ndarray]:
         columns = {"time [s]": self.times, "speed [rad/s]": self.speeds}

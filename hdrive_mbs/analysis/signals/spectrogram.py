@@ -12,6 +12,7 @@ from hdrive_mbs.analysis.signals.sliding_spectra import piece_samples, sliding_s
 from hdrive_mbs.analysis.signals.windows import window_named
 from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.printed_table import PrintedTable, thinned
 from hdrive_mbs.signals import FloatArray, TimeHistory
 
 TURN = 2.0 * np.pi
@@ -42,6 +43,16 @@ class Spectrogram(Result):
     def resolution(self) -> float:
         """Distance at which two frequencies begin to be told apart [rad/s]: 2 pi/length; lines lie four times as close."""
         return TURN / self.length
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """The largest line of each piece."""
+        at = np.argmax(self.amplitude, axis=1)
+        columns = {
+            "time [s]": self.times,
+            "largest line at [rad/s]": self.frequency[at],
+            f"amplitude 0-peak [{self.unit}]": self.amplitude[np.arange(len(at)), at],
+        }
+        return (thinned(columns, title=f"spectrogram of {self.channel}, pieces of {self.length:.4g} s, {self.window}"),)
 
     def columns(self) -> dict[str, np.ndarray]:
         pieces, lines = self.amplitude.shape

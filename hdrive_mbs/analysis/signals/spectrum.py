@@ -11,6 +11,7 @@ from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.signals.windows import line_amplitudes, local_maxima, window_named
 from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.errors import AnalysisError, ParameterError
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.signals import FloatArray, TimeHistory
 
@@ -69,6 +70,14 @@ class Spectrum(Result):
         """
         found = local_maxima(self.amplitude, window_named(self.window), count, above)
         return tuple(FrequencyPeak(position * self.resolution, height) for position, height in found)
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """The largest lines."""
+        rows = tuple((peak.frequency, peak.frequency / (2.0 * np.pi), peak.amplitude) for peak in self.peaks())
+        span = f"{self.start:g} to {self.end:g} s, lines {self.resolution:.4g} rad/s apart, {self.window}"
+        notes = (f"mean {self.mean:.6g} {self.unit}; {span}",)
+        heads = ("frequency [rad/s]", "frequency [Hz]", f"amplitude 0-peak [{self.unit}]")
+        return (PrintedTable(title=f"largest lines of {self.channel}", heads=heads, rows=rows, notes=notes),)
 
     def columns(self) -> dict[str, np.ndarray]:
         return {

@@ -15,6 +15,7 @@ from hdrive_mbs.analysis.signals.spectrum import chosen_span
 from hdrive_mbs.analysis.signals.windows import Window, window_named
 from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.printed_table import PrintedTable, thinned
 from hdrive_mbs.signals import FloatArray, TimeHistory
 
 SMEARED = 0.02
@@ -64,6 +65,18 @@ class Waterfall(Result):
         """Largest amplitude within ``width`` times the resolution of an order, at each speed; negative orders are backward whirl."""
         near = np.abs(self.lines - self.order_line(order)[:, None]) <= width * self.resolution
         return np.asarray(np.max(np.where(near, self.amplitude, 0.0), axis=1))
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """The largest line at each speed."""
+        at = np.argmax(self.amplitude, axis=1)
+        unit, piece = ("rad/s", f"{self.length:.4g} s") if self.axis == "frequency" else ("orders", f"{self.length:.4g} revolutions")
+        columns = {
+            f"speed of {self.reference} [rad/s]": self.speeds,
+            "time [s]": self.times,
+            f"largest line at [{unit}]": self.lines[at],
+            f"amplitude 0-peak [{self.unit}]": self.amplitude[np.arange(len(at)), at],
+        }
+        return (thinned(columns, title=f"waterfall of {self.channel}, pieces of {piece}, {self.window}"),)
 
     def columns(self) -> dict[str, np.ndarray]:
         pieces, lines = self.amplitude.shape

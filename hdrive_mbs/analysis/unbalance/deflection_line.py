@@ -14,6 +14,7 @@ from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Network
+from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
@@ -61,6 +62,17 @@ class StaticDeflection(Result):
             raise unknown_place("bearing", bearing, self.bearings, "This deflection")
         k = self.bearings.index(bearing)
         return float(self.load_x[k]), float(self.load_y[k])
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """Every place, and the load of every bearing on its housing."""
+        places = {name: list(values) for name, values in self.columns().items()}
+        rows = tuple(tuple(item if isinstance(item, str) else float(item) for item in row) for row in zip(*places.values(), strict=True))
+        loads = tuple(zip(self.bearings, map(float, self.load_x), map(float, self.load_y), strict=True))
+        weight = f"weight of what turns: {self.weight_x:.6g} N in x, {self.weight_y:.6g} N in y"
+        return (
+            PrintedTable(title=f"deflection at {self.speed:g} rad/s", heads=tuple(places), rows=rows),
+            PrintedTable(title="bearing loads", heads=("bearing", "on its housing in x [N]", "in y [N]"), rows=loads, notes=(weight,)),
+        )
 
     def columns(self) -> dict[str, np.ndarray]:
         return {

@@ -17,6 +17,7 @@ from hdrive_mbs.analysis.unbalance.speed_line import SpeedLine, check_lateral, f
 from hdrive_mbs.bearings.linear import LinearBearing
 from hdrive_mbs.components.bearing import Bearing
 from hdrive_mbs.errors import AnalysisError, ParameterError, unknown_place
+from hdrive_mbs.printed_table import PrintedTable, thinned
 from hdrive_mbs.progress import Report, progress_bar
 from hdrive_mbs.scene import Scene
 
@@ -52,6 +53,10 @@ class CriticalSpeedMap(Result):
     whirl: tuple[str, ...]
     forward_share: FloatArray
     order: float
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """The critical speeds over the stiffness of the supports."""
+        return (thinned(self.columns(), title=f"undamped critical speeds of order {self.order:g}"),)
 
     def columns(self) -> dict[str, np.ndarray]:
         table: dict[str, np.ndarray] = {"support stiffness [N/m]": self.stiffness}

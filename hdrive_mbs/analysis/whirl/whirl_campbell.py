@@ -21,6 +21,7 @@ from hdrive_mbs.analysis.whirl.spinning_line import SpinningLine
 from hdrive_mbs.analysis.whirl.whirl_kind import WhirlKinds
 from hdrive_mbs.analysis.whirl.whirl_modes import STABLE, check_count
 from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.printed_table import PrintedTable, thinned
 from hdrive_mbs.progress import progress_bar
 from hdrive_mbs.scene import Scene
 
@@ -29,6 +30,9 @@ HEAVY = 0.2
 
 BACKWARD = -0.98
 """Circularity below which a backward whirl is marked: forward circles, which alone unbalance drives, have 10 % of its amplitude."""
+
+ROUNDING = 1e-9
+"""A damping ratio below this is printed as 0."""
 
 ABOVE = 1.5
 """Modes up to this multiple of the highest order line are calculated where no number of branches is given."""
@@ -85,6 +89,30 @@ class WhirlCampbell(Result):
     def log_decrements(self) -> FloatArray:
         """ln of the ratio of successive peaks, 2 pi zeta / sqrt(1 - zeta^2), (s, b)."""
         return np.asarray(2.0 * np.pi * self.damping_ratios * self.natural / self.frequencies)
+
+    def tables(self) -> tuple[PrintedTable, ...]:
+        """The branches at the first and the last speed, the critical speeds, and where branches begin or cease to grow."""
+        heads = ["mode", "whirl"]
+        for speed in (self.speeds[0], self.speeds[-1]):
+            heads += [f"at {speed:g} rad/s: damped [rad/s]", "damping ratio"]
+        ends = [(self.frequencies[row], self.damping_ratios[row]) for row in (0, -1)]
+        rows = tuple(
+            (str(k + 1), word, *(_unrounded(float(values[k])) for pair in ends for values in pair)) for k, word in enumerate(self.whirl)
+        )
+        criticals = {name: values for name, values in self.critical_columns().items() if not name.startswith("frequency")}
+        criticals["damping ratio [1]"] = np.array([_unrounded(float(value)) for value in self.critical_damping_ratios])
+        found = [PrintedTable(title="branches", heads=tuple(heads), rows=rows), thinned(criticals, title="critical speeds")]
+        if not len(self.critical_speeds):
+            found[1] = PrintedTable(heads=(), rows=(), notes=("no critical speed in this range",))
+        if len(self.threshold_speeds):
+            limits = {
+                "speed [rad/s]": self.threshold_speeds,
+                "mode": np.array(self.threshold_branches, int) + 1,
+                "frequency [rad/s]": self.threshold_frequencies,
+                "note": np.array(self.threshold_notes),
+            }
+            found.append(thinned(limits, title="thresholds of stability"))
+        return tuple(found)
 
     def columns(self) -> dict[str, np.ndarray]:
         table: dict[str, np.ndarray] = {"speed [rad/s]": self.speeds}
@@ -227,6 +255,11 @@ class _Threshold:
     branch: int
     frequency: float
     note: str
+
+
+def _unrounded(ratio: float) -> float:
+    """A damping ratio, 0 where it is rounding."""
+    return 0.0 if abs(ratio) < ROUNDING else ratio
 
 
 def _grid(speeds: Sequence[float] | FloatArray) -> FloatArray:
