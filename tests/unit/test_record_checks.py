@@ -295,6 +295,16 @@ def test_a_drive_at_rest_is_not_stuck() -> None:
     assert at_rest.findings == ()
 
 
+@pytest.mark.parametrize("before", range(2, 40))
+def test_an_encoder_that_stands_still_but_for_a_tick_is_read(before: int) -> None:
+    # the shaft held at rest: too few samples beside the flat stretch to tell a straight line from
+    step = 2.0 * np.pi / 8192.0
+    ticked = np.where(np.arange(len(TIMES)) < before, step, 0.0)
+    assert record(spin=("rad", ticked), load=("rad", ANGLE / 100.0)).checked().findings == ()
+    several = np.where(np.arange(len(TIMES)) < before, step * (np.arange(len(TIMES)) % 2), 0.0)
+    assert record(spin=("rad", several), load=("rad", ANGLE / 100.0)).checked().findings == ()
+
+
 def test_a_constant_input_is_reported() -> None:
     finding = only(record(load_torque=("N m", np.full(len(TIMES), 20.0)), x=("m", SPEED)).findings, "constant")
     assert finding.text == "constant at 20 N m over the whole record: it excites nothing and shows nothing"

@@ -156,6 +156,8 @@ def _straight(values: FloatArray) -> bool:
     steps = np.diff(values[::10])
     moving = np.abs(steps) > 4.0 * tolerance
     alike = (np.abs(np.diff(steps)) <= tolerance) & moving[1:] & moving[:-1]
+    if not len(alike):
+        return False
     starts, lengths = _runs(alike.astype(float))
     on_lines = 0
     for start, length in zip(starts.tolist(), lengths.tolist(), strict=True):
