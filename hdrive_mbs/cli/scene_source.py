@@ -23,7 +23,8 @@ from hdrive_mbs.units import to_si
 def open_scene(path: Path, settings: Sequence[str] = (), effects: Sequence[str] = (), own: Sequence[Path] = ()) -> Scene:
     """The scene of a .py file (its ``build()``) or of a .toml or .json file, with changes applied.
 
-    settings : ``PATH=VALUE``; a name without a dot that is an argument of build() is passed to it
+    settings : ``PATH=VALUE``; a name without a dot that is an argument of build() is passed to it; values of
+        effects are set too, those of ``effects`` among them
     effects : ``TYPE@PLACE:field=value,field=value``
     own : .py files with effect classes that these or the scene file name
     """
@@ -32,12 +33,12 @@ def open_scene(path: Path, settings: Sequence[str] = (), effects: Sequence[str] 
         scene, rest = _build(path, settings)
     else:
         scene, rest = load_scene(path, kinds), list(settings)
-    for text in rest:
-        name, value = parse_setting(scene, text)
-        scene = scene.replacing({name: value})
     for text in effects:
         effect, place = parse_effect(text)
         scene = scene.with_effect(effect, at=place)
+    for text in rest:
+        name, value = parse_setting(scene, text)
+        scene = scene.replacing({name: value})
     return scene
 
 

@@ -14,7 +14,7 @@ import numpy as np
 import typer
 
 from hdrive_mbs.campaign.points import shown
-from hdrive_mbs.cli.options import Effects, JsonFile, ScenePath, Settings
+from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, ScenePath, Settings
 from hdrive_mbs.cli.output import print_table, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.cli.speeds import parse_orders, parse_speeds
@@ -32,13 +32,15 @@ if TYPE_CHECKING:
 class SceneFileAnalysis:
     """A scene file opened anew with the values of a point, and analysed: for scenes whose code only the file holds.
 
-    digest : of the file's text, so that a changed file makes another job
+    digest : of the texts of the file and of ``own``, so that a changed file makes another job
+    own : files with effect classes
     """
 
     path: str
     digest: str
     settings: tuple[str, ...]
     effects: tuple[str, ...]
+    own: tuple[str, ...]
     analysis: str
     options: Mapping[str, Any]
     known_units: Mapping[str, str]
@@ -49,7 +51,8 @@ class SceneFileAnalysis:
         return analysis_of(self.analysis)(self._scene(point), **self.options)
 
     def _scene(self, point: Mapping[str, Any]) -> Scene:
-        return open_scene(Path(self.path), (*self.settings, *(f"{name}={value}" for name, value in point.items())), self.effects)
+        settings = (*self.settings, *(f"{name}={value}" for name, value in point.items()))
+        return open_scene(Path(self.path), settings, self.effects, [Path(file) for file in self.own])
 
     def check(self, point: Mapping[str, Any]) -> None:
         """Raise PlaceError at once for a name that neither the scene nor build() has."""
@@ -73,6 +76,7 @@ def sweep(
     analysis: Annotated[str, typer.Option(help="modes, campbell, run_up or start_up.")] = "modes",
     set_: Settings = None,
     effect: Effects = None,
+    effects: EffectFiles = None,
     torque: Annotated[float | None, typer.Option(help="Of modes: load torque [N m].")] = None,
     speed: Annotated[float | None, typer.Option(help="Of modes: motor speed [rad/s].")] = None,
     speeds: Annotated[str | None, typer.Option(metavar="FIRST:LAST:COUNT", help="Of campbell: speeds [rad/s] or with units.")] = None,
@@ -107,17 +111,18 @@ def sweep(
         "step": step,
     }
     options = {name: value for name, value in given.items() if value is not None}
-    chosen = open_scene(scene, set_ or (), effect or ())
+    chosen = open_scene(scene, set_ or (), effect or (), effects or ())
     points = grid(dict(parse_values(chosen, text) for text in vary))
     plain = SceneAnalysis(scene=chosen, analysis=analysis, options=options)  # checks the options too
     task: Any = plain
     if not _travels(plain, points[0]):
-        digest = _digest(scene)
+        digest = _digest([scene, *(effects or ())])
         task = SceneFileAnalysis(
             path=str(scene.resolve()),
             digest=digest,
             settings=tuple(set_ or ()),
             effects=tuple(effect or ()),
+            own=tuple(str(file.resolve()) for file in effects or ()),
             analysis=analysis,
             options=options,
             known_units=plain.units(),
@@ -217,10 +222,10 @@ def tell_failures(failures: Sequence[Mapping[str, Any]], folder: Path, of: Calla
     print(f"{len(failures)} failed; all of them with traceback: {file}", file=sys.stderr)
 
 
-def _digest(path: Path) -> str:
+def _digest(paths: Sequence[Path]) -> str:
     import hashlib
 
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    return hashlib.sha256(b"".join(hashlib.sha256(path.read_bytes()).digest() for path in paths)).hexdigest()
 
 
 def _print(name: str, result: Campaign, table: Path) -> None:

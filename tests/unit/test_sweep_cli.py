@@ -101,6 +101,30 @@ def test_a_scene_with_a_class_of_its_file_is_opened_anew_by_the_workers(tmp_path
     assert heavier < heavy
 
 
+def test_an_effect_of_the_users_own_file_takes_part(tmp_path: Path) -> None:
+    file = tmp_path / "own_drag_of_a_sweep.py"
+    file.write_text(
+        "from dataclasses import dataclass\n\nimport hdrive_mbs as hm\n\n\n@dataclass(frozen=True, kw_only=True)\n"
+        "class SweptDrag(hm.TorqueEffect):\n    drag: float = hm.parameter('N m s/rad', 'drag of a brake', low=0.0)\n\n"
+        "    def torque(self, time, angle, speed):\n        return -self.drag * speed\n"
+    )
+    words = [
+        TRAIN,
+        "--effect",
+        "SweptDrag@gear.flexspline:drag=1",
+        "--effects",
+        str(file),
+        "--vary",
+        "swept_drag.drag=0.1,1",
+        "--torque",
+        "50",
+    ]
+    done = invoke(*words, "--count", "1", "--workers", "2", "--out", str(tmp_path / "campaign"))
+    assert done.exit_code == 0, done.output
+    ratios = hm.Campaign.load(tmp_path / "campaign" / "campaign.npz")["mode 1 damping ratio [1]"]
+    assert 0.0 < ratios[0] < ratios[1]
+
+
 def test_failed_jobs_end_with_a_code_of_their_own_and_a_file_with_tracebacks(tmp_path: Path) -> None:
     # a ratio of 0 is refused by HarmonicDrive; the other job is done all the same
     done = invoke(TRAIN, "--vary", "gear.ratio=100,0", "--workers", "1", "--out", str(tmp_path))
