@@ -14,7 +14,7 @@ from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import enough
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.located import Located, bends, localised_about, located
-from hdrive_mbs.diagnosis.pairs import alone, contenders, joined, swapped
+from hdrive_mbs.diagnosis.pairs import alone, contenders, joined, moved, swapped
 from hdrive_mbs.diagnosis.search import Depth, Report, Search, fit_nominal, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import suspects
@@ -108,8 +108,9 @@ def _second(
     if not together:
         return pair, ()
     best = min(together, key=lambda item: item.fitted.cost)
-    other = swapped(team, coarse, best, first.suspect.label, single.labels[:SINGLES])
-    return pair, contenders(team, coarse, (*together, *other), first)
+    said("exchanging causes of the best pair", 0, 1)
+    known = [*together, *swapped(team, coarse, best, first.suspect.label, single.labels[:SINGLES])]
+    return pair, contenders(team, coarse, [*known, *moved(team, coarse, known, tried)], first)
 
 
 def _said(said: Report, about: str, stage: str, done: int, total: int) -> None:

@@ -139,6 +139,11 @@ class Hypothesis:
         parts = [f"{type(item.effect).__name__} at {item.at}" for item in self.added] + [f"{name} off" for name in self.loose]
         return " + ".join(parts) or "nominal"
 
+    @property
+    def labels(self) -> frozenset[tuple[str, str]]:
+        """(family, place) of the effects."""
+        return frozenset(item.label for item in self.added)
+
     def start(self, nominal: FloatArray | None = None) -> FloatArray:
         """Coordinates of the start values; the nominal ones as given (in prior standard deviations of the nominal model)."""
         z = np.zeros(self.size)

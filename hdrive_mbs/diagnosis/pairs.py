@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.simulator import Simulator
-from hdrive_mbs.diagnosis.suspects import Label, Suspect, renamed
+from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect, renamed
 from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, Found, Task, further, run_task, those_that_ran
 from hdrive_mbs.diagnosis.team import Team
 
 TOGETHER = 5
 """Joint steps of two causes that are put together."""
+MOVED = 8
+"""Joint steps of a pair with a cause at another place."""
 CONTENDERS, NEARLY = 3, 0.01
 """Pairs that are fitted to the end at most, and share of what a second cause gains by which they may lie behind the best until then."""
 
@@ -75,6 +78,32 @@ def alone(team: Team, simulator: Simulator, pair: Found, everything: Sequence[Su
     return those_that_ran(whose, team.map(run_task, simulator, tasks))
 
 
+def moved(team: Team, simulator: Simulator, pairs: Sequence[Found], tried: Sequence[Candidate]) -> list[Found]:
+    """The best pair with one of its causes at each of the other places where it may sit, as far as these pairs were not tried.
+
+    The place of a cause was chosen while the other one was missing, or among a few that looked best: both ends of a stiff shaft
+    look alike then.
+
+    tried : effects and places that are admitted
+    """
+    if not pairs:
+        return []
+    best = min(pairs, key=lambda item: item.fitted.cost)
+    full, z = best.fitted.hypothesis.rescaled(best.fitted.z)
+    known = {_causes(item) for item in pairs}
+    tasks, whose = [], []
+    for k, mine in enumerate(full.added):
+        for place in tried:
+            added = Added(mine.effect, place.at, mine.name)
+            hypothesis = Hypothesis(full.factors, (*full.added[:k], added, *full.added[k + 1 :]), full.loose)
+            if place.kind is not type(mine.effect) or _causes_of(hypothesis) in known or len(hypothesis.labels) < len(full.added):
+                continue
+            is_second = k == len(full.added) - 1 and best.suspect.law != PARAMETER
+            tasks.append(Task(hypothesis, z, None, MOVED, FINE, leading=best.fitted.chi_fit))
+            whose.append(Suspect(added.label, place.kind.__name__, (hypothesis,), (hypothesis,)) if is_second else best.suspect)
+    return those_that_ran(whose, team.map(run_task, simulator, tasks))
+
+
 def contenders(team: Team, simulator: Simulator, pairs: Sequence[Found], first: Found) -> tuple[Found, ...]:
     """The pairs that may be the best, fitted to the end, best first: one for each two causes.
 
@@ -97,5 +126,8 @@ def contenders(team: Team, simulator: Simulator, pairs: Sequence[Found], first: 
 
 
 def _causes(pair: Found) -> frozenset[object]:
-    hypothesis = pair.fitted.hypothesis
-    return frozenset((*(item.label for item in hypothesis.added), *hypothesis.loose))
+    return _causes_of(pair.fitted.hypothesis)
+
+
+def _causes_of(hypothesis: Hypothesis) -> frozenset[object]:
+    return frozenset((*hypothesis.labels, *hypothesis.loose))

@@ -22,7 +22,7 @@ from hdrive_mbs.diagnosis.ground import held, screen_from
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
 from hdrive_mbs.diagnosis.located import Located, located
-from hdrive_mbs.diagnosis.pairs import alone, contenders
+from hdrive_mbs.diagnosis.pairs import alone, contenders, moved
 from hdrive_mbs.diagnosis.screening import Look
 from hdrive_mbs.diagnosis.search import ENOUGH
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -480,6 +480,33 @@ def test_of_two_pairs_that_cannot_be_told_apart_the_part_that_differs_is_tied(
     claim = judge(900.0, [single], [best, other])
     assert claim.fit is best
     assert claim.tied == tied
+
+
+def test_a_cause_of_a_pair_is_tried_at_its_other_places() -> None:
+    """Drag of the load and friction of the motor, of a pair that has them the other way round for one."""
+    planted = ((hm.QuadraticDrag(coefficient=0.3), "load"), (hm.CoulombStribeckFriction(coulomb=0.05), "motor"))
+    both = Simulator(BENCH.trials(records(*planted)[0]), 2.5e-4, 4)
+    factors, tried = factors_of(BENCH), candidates(BENCH.scene, [hm.CoulombStribeckFriction, hm.QuadraticDrag])
+    found = [
+        Added(hm.QuadraticDrag(coefficient=0.3), "load", "drag"),
+        Added(hm.CoulombStribeckFriction(coulomb=2.5), "load", "friction"),  # 50 times the motor's, as the gear reduces 50 : 1
+    ]
+    for first, second in (found, found[::-1]):
+        hypothesis = Hypothesis(factors, (first, second))
+        wrong = Suspect(second.label, type(second.effect).__name__, (hypothesis,), (hypothesis,))
+        pair = Found(wrong, fit(both, hypothesis, hypothesis.start(), steps=12))
+        with Team(1) as team:
+            others = moved(team, both, [pair], tried)
+        best = min(others, key=lambda item: item.fitted.cost)
+        assert best.fitted.hypothesis.labels == {("quadratic_drag", "load"), ("friction", "motor")}
+        assert best.fitted.cost < pair.fitted.cost - 100.0
+        assert best.suspect.label == best.fitted.hypothesis.added[-1].label  # the second cause keeps its name, wherever it is
+        places = {item.fitted.hypothesis.labels for item in others}
+        assert pair.fitted.hypothesis.labels not in places
+        assert len(places) == len(others)
+        with Team(1) as team:
+            assert moved(team, both, [pair, *others], tried) != []  # from the best of them
+            assert moved(team, both, [], tried) == []
 
 
 def test_pairs_that_lie_close_together_are_fitted_to_the_end_before_one_is_chosen(
