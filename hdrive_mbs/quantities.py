@@ -9,6 +9,7 @@ import dataclasses
 import inspect
 import math
 import re
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -39,9 +40,17 @@ def arcmin(value: float) -> float:
     return math.radians(value / 60.0)
 
 
+class UnusualValueWarning(UserWarning):
+    """A value that is allowed and yet looks as if it were in another unit."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Quantity:
-    """Unit, meaning and allowed range of one field; ``typical`` is where a search for its value begins."""
+    """Unit, meaning and allowed range of one field.
+
+    typical : where a search for its value begins
+    usual : range outside of which a value other than 0 is taken and warned of;  hint : what it may be then
+    """
 
     unit: str
     doc: str
@@ -50,6 +59,8 @@ class Quantity:
     above: float | None = None
     sequence: bool = False
     typical: tuple[float, float] | None = None
+    usual: tuple[float, float] | None = None
+    hint: str = ""
 
     def __post_init__(self) -> None:
         if self.typical is None:
@@ -69,9 +80,19 @@ class Quantity:
             and (self.high is None or value <= self.high)
         )
 
-    def check(self, where: str, value: float) -> None:
-        """Raise ParameterError when the value is not finite or out of range."""
+    def is_usual(self, value: float) -> bool:
+        """Whether the value is one that is not warned of."""
+        return self.usual is None or value == 0.0 or self.usual[0] <= value <= self.usual[1]
+
+    def check(self, where: str, value: float, stacklevel: int = 4) -> None:
+        """Raise ParameterError when the value is not finite or out of range; warn of one that is unusual.
+
+        stacklevel : of the warning; 1 names the caller, 4 who makes an object with the field
+        """
         if self.allows(value):
+            if not self.is_usual(value):
+                said = f"{where} = {value:g} {self.unit} is unusual ({self.doc}): {self.hint}"
+                warnings.warn(said, UnusualValueWarning, stacklevel=stacklevel + 1)
             return
         unit = "" if self.unit == "1" else f" {self.unit}"
         if not math.isfinite(value):
@@ -95,9 +116,14 @@ def parameter(
     high: float | None = None,
     above: float | None = None,
     typical: tuple[float, float] | None = None,
+    usual: tuple[float, float] | None = None,
+    hint: str = "",
 ) -> Any:
-    """A number with a unit.  ``low``/``high`` are allowed values, ``above`` is not; a search varies fields with a ``typical`` range."""
-    quantity = Quantity(unit=unit, doc=doc, low=low, high=high, above=above, typical=typical)
+    """A number with a unit.  ``low``/``high`` are allowed values, ``above`` is not; a search varies fields with a ``typical`` range.
+
+    Values outside of the ``usual`` range are warned of, with the ``hint``.
+    """
+    quantity = Quantity(unit=unit, doc=doc, low=low, high=high, above=above, typical=typical, usual=usual, hint=hint)
     return dataclasses.field(default=default, metadata={"quantity": quantity})
 
 
@@ -199,7 +225,13 @@ class Described:
     def __post_init__(self) -> None:
         for field, quantity in _checked(type(self)):
             value = getattr(self, field.name)
-            if type(value) is float and quantity is not None and not quantity.sequence and quantity.allows(value):
+            if (
+                type(value) is float
+                and quantity is not None
+                and not quantity.sequence
+                and quantity.allows(value)
+                and quantity.is_usual(value)
+            ):
                 continue
             if value is None and field.default is None:
                 continue

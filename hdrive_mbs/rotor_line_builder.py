@@ -13,6 +13,7 @@ from hdrive_mbs.components.shaft_section import ShaftSection
 from hdrive_mbs.errors import ParameterError, SceneError, unknown_place
 from hdrive_mbs.quantities import Described, Quantity, option, parameter
 from hdrive_mbs.scene import Scene
+from hdrive_mbs.usual_values import DENSITY, SHEAR_MODULUS, YOUNGS_MODULUS
 
 SAME_PLACE = 1e-9
 """Positions closer than this share of the length of the shaft are one."""
@@ -31,9 +32,9 @@ class ShaftMaterial(Described):
 
     _kind = "shaft material"
 
-    youngs_modulus: float = parameter("Pa", "E", above=0.0)
-    shear_modulus: float = parameter("Pa", "G", above=0.0)
-    density: float = parameter("kg/m^3", "density; 0: massless", default=0.0, low=0.0)
+    youngs_modulus: float = parameter("Pa", "E", above=0.0, **YOUNGS_MODULUS)
+    shear_modulus: float = parameter("Pa", "G", above=0.0, **SHEAR_MODULUS)
+    density: float = parameter("kg/m^3", "density; 0: massless", default=0.0, low=0.0, **DENSITY)
     damping: float = parameter("s", "damping over stiffness, not rotating", default=0.0, low=0.0)
     rotating_damping: float = parameter("s", "damping over bending stiffness, rotating with the shaft", default=0.0, low=0.0)
     shear: bool = option("Timoshenko beams; False: Euler-Bernoulli", default=False)

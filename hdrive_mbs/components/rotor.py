@@ -9,7 +9,10 @@ from typing import Any, Self
 from hdrive_mbs.components.component import Component, Flange
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.network.rigid_mass import RigidMass
-from hdrive_mbs.quantities import parameter
+from hdrive_mbs.quantities import Quantity, parameter
+from hdrive_mbs.usual_values import DENSITY, DIAMETER
+
+_DIAMETER, _DENSITY = Quantity(unit="m", doc="of a disc", **DIAMETER), Quantity(unit="kg/m^3", doc="density", **DENSITY)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,6 +51,9 @@ class Rotor(Component):
                 raise ParameterError(f"Rotor.disc {name} = {value:g}: must be greater than 0.")
         if not 0.0 <= bore < diameter:
             raise ParameterError(f"Rotor.disc bore = {bore:g} m: must be at least 0 and less than the diameter of {diameter:g} m.")
+        _DIAMETER.check("Rotor.disc diameter", diameter, stacklevel=2)
+        _DIAMETER.check("Rotor.disc thickness", thickness, stacklevel=2)
+        _DENSITY.check("Rotor.disc density", density, stacklevel=2)
         rotor = cls._solid_disc(diameter, thickness, density, bore, unbalance)
         if rotor.eccentricity > 0.5 * diameter:
             raise ParameterError(

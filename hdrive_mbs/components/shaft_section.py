@@ -21,6 +21,7 @@ from hdrive_mbs.network.station import Station
 from hdrive_mbs.quantities import option, parameter
 from hdrive_mbs.shafts.beam import Beam
 from hdrive_mbs.shafts.section_geometry import CircularSection
+from hdrive_mbs.usual_values import DENSITY, DIAMETER, LENGTH, SHEAR_MODULUS, YOUNGS_MODULUS
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -40,12 +41,12 @@ class ShaftSection(Component):
     the first critical speed (and is a Python callback in time integration).
     """
 
-    length: float = parameter("m", "distance between the stations", above=0.0)
-    diameter: float = parameter("m", "outer diameter", above=0.0)
+    length: float = parameter("m", "distance between the stations", above=0.0, **LENGTH)
+    diameter: float = parameter("m", "outer diameter", above=0.0, **DIAMETER)
     bore: float = parameter("m", "inner diameter", default=0.0, low=0.0)
-    youngs_modulus: float = parameter("Pa", "E", above=0.0)
-    shear_modulus: float = parameter("Pa", "G", above=0.0)
-    density: float = parameter("kg/m^3", "density; 0: massless", default=0.0, low=0.0)
+    youngs_modulus: float = parameter("Pa", "E", above=0.0, **YOUNGS_MODULUS)
+    shear_modulus: float = parameter("Pa", "G", above=0.0, **SHEAR_MODULUS)
+    density: float = parameter("kg/m^3", "density; 0: massless", default=0.0, low=0.0, **DENSITY)
     elements: float = parameter("1", "number of beam elements, a whole number", default=1.0, low=1.0, high=500.0)
     shear: bool = option("Timoshenko beam (shear coefficient of Cowper); False: Euler-Bernoulli", default=False)
     rotary_inertia: bool = option("whether the mass of a piece of shaft resists tilting too (Rayleigh)", default=True)
