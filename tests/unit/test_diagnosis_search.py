@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 
 import numpy as np
@@ -12,7 +13,7 @@ import hdrive_mbs as hm
 from hdrive_mbs.diagnosis import all_samples
 from hdrive_mbs.diagnosis.all_samples import on_all_samples
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
-from hdrive_mbs.diagnosis.candidates import candidates
+from hdrive_mbs.diagnosis.candidates import Candidate, candidates
 from hdrive_mbs.diagnosis.choosing import beyond, enough, passed_over, spread_out
 from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian, secant
@@ -23,8 +24,9 @@ from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
 from hdrive_mbs.diagnosis.located import Located, located
 from hdrive_mbs.diagnosis.pairs import alone, contenders, moved
+from hdrive_mbs.diagnosis.result import Place
 from hdrive_mbs.diagnosis.screening import Look
-from hdrive_mbs.diagnosis.search import ENOUGH
+from hdrive_mbs.diagnosis.search import ENOUGH, Search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, simplest, suspects
 from hdrive_mbs.diagnosis.tasks import FIRST, Found, Task, run_task
@@ -456,6 +458,33 @@ def test_a_gap_whose_place_cannot_be_looked_for_says_why(simulator: Simulator, n
     assert found.doubt == "not looked for: The model has no steady state."
     with Team(1) as team:
         assert at_the_place(team, simulator, near, found, [], lambda stage, done, total: None) == ()
+
+
+def test_what_swings_unseen_at_the_place_of_the_gap_begins_at_frequencies_close_together(
+    simulator: Simulator, near: Fitted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A pipe on a housing that swings at 284 rad/s did not show in looks that began at 200 and 400 rad/s."""
+    found = Located(places=(Place(at="bearing_1.housing", probability=0.9, gain=1e3, share=0.9),), doubt="", forces=(), turned=())
+    tried = candidates(rotor_bench.bench().scene, [hm.HiddenModeSupport, hm.SupportStiffnessChange, hm.GroundVibration, hm.BallPass])
+    asked: list[Candidate] = []
+
+    def keep(team: Team, coarse: Simulator, base: Fitted, groups: object, there: list[Candidate], **more: object) -> Search:
+        asked.extend(there)
+        return Search(base, ())
+
+    monkeypatch.setattr("hdrive_mbs.diagnosis.at_the_place.search", keep)
+    with Team(1) as team:
+        assert at_the_place(team, simulator, near, found, tried, lambda stage, done, total: None) == ()
+    assert {(item.kind, item.at) for item in asked} == {(hm.HiddenModeSupport, "bearing_1"), (hm.GroundVibration, "bearing_1")}
+    [hidden] = [item for item in asked if item.kind is hm.HiddenModeSupport]
+    [plain] = [item for item in tried if item.kind is hm.HiddenModeSupport and item.at == "bearing_1"]
+    for starts, given in ((hidden.first, plain.first), (hidden.starts, plain.starts)):
+        rates = sorted({item.effect.natural_frequency for item in starts})  # type: ignore[attr-defined]
+        assert (rates[0], rates[-1]) == (200.0, pytest.approx(800.0))
+        assert max(b / a for a, b in itertools.pairwise(rates)) < 1.2
+        ratios = {item.effect.ratio for item in given}  # type: ignore[attr-defined]
+        assert len(starts) == len(rates) * len(ratios)
+        assert {item.effect.ratio for item in starts} == ratios  # type: ignore[attr-defined]
 
 
 def drags(*places: str) -> Hypothesis:
