@@ -55,6 +55,7 @@ class BearingLaw(Described):
     """
 
     _kind: ClassVar[str] = "bearing law"
+    _use: ClassVar[str] = "hm.Bearing(law={name}(...)) takes it"
 
     def stiffness_matrix(self) -> FloatArray:
         """Constant part K of F = K d + D d' + forces(), 6x6 over DIRECTIONS [N/m, N/rad, N m/m, N m/rad]."""

@@ -25,6 +25,7 @@ class StiffnessLaw(Described):
     """
 
     _kind: ClassVar[str] = "flexspline stiffness"
+    _use: ClassVar[str] = "hm.HarmonicDrive(stiffness={name}(...)) takes it"
     restoring: ClassVar[bool] = True
     """Whether the law claims M(phi)*phi >= 0 (checked when a scene is assembled)."""
 

@@ -20,6 +20,7 @@ class LoadLaw(Described):
     """
 
     _kind: ClassVar[str] = "load"
+    _use: ClassVar[str] = "hm.Load(torque={name}(...)) takes it; a drive of 60 N m at every speed is characteristic=lambda speed: 60.0"
 
     def torque(self, time: Value, angle: Value, speed: Value) -> Value:
         """Resisting torque [N m] at a time [s], forward angle [rad] and forward speed [rad/s]."""

@@ -22,6 +22,7 @@ class MotorCharacteristic(Described):
     """
 
     _kind: ClassVar[str] = "motor characteristic"
+    _use: ClassVar[str] = "hm.Motor(characteristic={name}(...)) or hm.DriveTorque(characteristic=...) takes it"
 
     def torque(self, time: Value, speed: Value) -> Value:
         """Torque [N m] at a time [s] and rotor speed [rad/s]."""

@@ -392,6 +392,23 @@ def test_an_effect_in_the_place_of_a_law_is_answered_with_how_effects_are_added(
     assert [placed.at for placed in scene.effects] == ["arm"]
 
 
+def test_a_law_of_another_part_is_answered_with_the_part_that_takes_it() -> None:
+    constant, drive = hm.ConstantTorque(value=60.0), hm.TorqueHistory(times=(0.0, 1.0), torques=(1.0, 1.0))
+    with pytest.raises(
+        ParameterError, match=r"hm\.Load\(torque=ConstantTorque\(\.\.\.\)\) takes it; .* characteristic=lambda speed: 60\.0"
+    ):
+        hm.DriveTorque(characteristic=constant)  # type: ignore[arg-type]
+    with pytest.raises(ParameterError, match=r"hm\.DriveTorque\(characteristic=\.\.\.\) takes it"):
+        hm.Load(inertia=1.0, torque=drive)  # type: ignore[arg-type]
+    with pytest.raises(ParameterError, match=r"hm\.HarmonicDrive\(stiffness=CubicStiffness\(\.\.\.\)\) takes it"):
+        hm.Load(inertia=1.0, torque=hm.CubicStiffness(linear=1e4, cubic=0.0))  # type: ignore[arg-type]
+    with pytest.raises(ParameterError, match=r"hm\.Bearing\(law=LinearBearing\(\.\.\.\)\) takes it"):
+        hm.Motor(inertia=1.0, characteristic=hm.LinearBearing.isotropic(radial=1e6, damping=0.0))  # type: ignore[arg-type]
+    line = {"drive": hm.DriveTorque(characteristic=lambda speed: 60.0), "rotor": hm.Inertia(inertia=2.0)}  # as it says
+    response = hm.simulate(hm.Scene(name="constant", parts=line, connections=[("drive", "rotor")]), 1.0)
+    assert response["rotor.speed"].values[-1] == pytest.approx(30.0, rel=1e-9)
+
+
 def test_parts_are_copied_and_pickled_whole() -> None:
     part = hm.Motor(inertia=1e-3, characteristic=hm.IdealSpeedMotor(motion=hm.ConstantSpeed(value=3.0)))
     assert pickle.loads(pickle.dumps(part)) == copy.deepcopy(part) == copy.copy(part) == part
