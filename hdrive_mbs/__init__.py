@@ -22,7 +22,8 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "ross_file.reading": ("load_ross",),
     "rotor_line_builder": ("rotor_line", "ShaftMaterial"),
     "signals": ("TimeHistory",),
-    "quantities": ("UnusualValueWarning", "parameter", "table", "option", "rpm", "mm", "degrees", "arcmin"),
+    "quantity": ("UnusualValueWarning",),
+    "quantities": ("parameter", "table", "option", "rpm", "mm", "degrees", "arcmin"),
     "errors": (
         "HdriveError", "KeywordError", "ParameterError", "UnitError", "PlaceError", "SceneError", "LawError", "FileFormatError",
         "RecordError", "SimulationError", "AnalysisError",

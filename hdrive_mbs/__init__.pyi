@@ -248,7 +248,6 @@ from hdrive_mbs.plots.diagnosis_ranking import plot_ranking as plot_ranking
 from hdrive_mbs.plots.diagnosis_traces import plot_residual as plot_residual
 from hdrive_mbs.plots.diagnosis_traces import plot_traces as plot_traces
 from hdrive_mbs.plots.report_html import write_report_html as write_report_html
-from hdrive_mbs.quantities import UnusualValueWarning as UnusualValueWarning
 from hdrive_mbs.quantities import arcmin as arcmin
 from hdrive_mbs.quantities import degrees as degrees
 from hdrive_mbs.quantities import mm as mm
@@ -256,6 +255,7 @@ from hdrive_mbs.quantities import option as option
 from hdrive_mbs.quantities import parameter as parameter
 from hdrive_mbs.quantities import rpm as rpm
 from hdrive_mbs.quantities import table as table
+from hdrive_mbs.quantity import UnusualValueWarning as UnusualValueWarning
 from hdrive_mbs.records.alignment import ClockMatch as ClockMatch
 from hdrive_mbs.records.alignment import aligned as aligned
 from hdrive_mbs.records.alignment import clock_match as clock_match

@@ -7,7 +7,8 @@ import textwrap
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from hdrive_mbs.quantities import Described, Quantity, readable
+from hdrive_mbs.quantities import Described, readable
+from hdrive_mbs.quantity import Quantity
 
 WIDTH = 116
 """Longest line, where no single value is longer."""

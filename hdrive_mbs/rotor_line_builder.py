@@ -11,7 +11,8 @@ from hdrive_mbs.components.component import Component
 from hdrive_mbs.components.rigid_section import RigidSection
 from hdrive_mbs.components.shaft_section import ShaftSection
 from hdrive_mbs.errors import ParameterError, SceneError, unknown_place
-from hdrive_mbs.quantities import Described, Quantity, option, parameter
+from hdrive_mbs.quantities import Described, option, parameter
+from hdrive_mbs.quantity import Quantity
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.usual_values import DENSITY, SHEAR_MODULUS, YOUNGS_MODULUS
 

@@ -19,7 +19,8 @@ from hdrive_mbs.components.component import Component
 from hdrive_mbs.documents import read_document
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import FileFormatError, HdriveError, PlaceError, UnitError
-from hdrive_mbs.quantities import Described, Quantity
+from hdrive_mbs.quantities import Described
+from hdrive_mbs.quantity import Quantity
 from hdrive_mbs.scene import PlacedEffect, Scene
 from hdrive_mbs.units import factor, to_si
 from hdrive_mbs.writing import write_text

@@ -12,7 +12,8 @@ import typer
 from hdrive_mbs.cli.options import JsonFile
 from hdrive_mbs.cli.output import print_table, write_json
 from hdrive_mbs.cli.scene_source import effect_types, open_scene
-from hdrive_mbs.quantities import FIELDS, Quantity
+from hdrive_mbs.quantities import FIELDS
+from hdrive_mbs.quantity import Quantity
 
 
 def effects(

@@ -14,7 +14,7 @@ from typing import Any
 from hdrive_mbs.cli.python_file import own_effects
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import FileFormatError, ParameterError, SceneError, unknown_place
-from hdrive_mbs.quantities import Quantity
+from hdrive_mbs.quantity import Quantity
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.scene_file import all_types, load_scene, parse_setting
 from hdrive_mbs.units import to_si

@@ -9,7 +9,8 @@ from typing import Any, Self
 from hdrive_mbs.components.component import Component, Flange
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.network.rigid_mass import RigidMass
-from hdrive_mbs.quantities import Quantity, parameter
+from hdrive_mbs.quantities import parameter
+from hdrive_mbs.quantity import Quantity
 from hdrive_mbs.usual_values import DENSITY, DIAMETER
 
 _DIAMETER, _DENSITY = Quantity(unit="m", doc="of a disc", **DIAMETER), Quantity(unit="kg/m^3", doc="density", **DENSITY)

@@ -16,7 +16,8 @@ from hdrive_mbs.diagnosis.hypothesis import Added
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import HdriveError, ParameterError
 from hdrive_mbs.network.network import Network
-from hdrive_mbs.quantities import Quantity, snake_case
+from hdrive_mbs.quantities import snake_case
+from hdrive_mbs.quantity import Quantity
 from hdrive_mbs.scene import Scene
 
 SHAPES = {1: 3, 2: 2}

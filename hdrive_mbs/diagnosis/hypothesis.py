@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.unknowns import Factor, Shape, Signed, Strength, Unknown, Vector
 from hdrive_mbs.effects.effect import Effect
-from hdrive_mbs.quantities import Quantity
+from hdrive_mbs.quantity import Quantity
 from hdrive_mbs.scene import PlacedEffect, Scene
 
 FloatArray = npt.NDArray[np.float64]

@@ -20,7 +20,8 @@ from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import ParameterError, RecordError, UnitError, unknown_place
-from hdrive_mbs.quantities import Described, Quantity
+from hdrive_mbs.quantities import Described
+from hdrive_mbs.quantity import Quantity
 from hdrive_mbs.records.record import Record
 
 FloatArray = npt.NDArray[np.float64]

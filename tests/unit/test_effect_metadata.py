@@ -14,7 +14,8 @@ from hdrive_mbs.errors import ParameterError, PlaceError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.network import Network
-from hdrive_mbs.quantities import Quantity, parameter, table
+from hdrive_mbs.quantities import parameter, table
+from hdrive_mbs.quantity import Quantity
 from models import drive_bench, harmonic_drive_train, two_rotor_line
 
 

@@ -22,7 +22,7 @@ from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE, followed_share, mixed
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.network.network import Network
-from hdrive_mbs.quantities import Quantity
+from hdrive_mbs.quantity import Quantity
 from models import drive_bench, rotor_bench
 
 STEP = 2.5e-4

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
+from hdrive_mbs.analysis.campbell_tables import NONE_MET, branch_table
 from hdrive_mbs.analysis.drive_train.modes import Modes, matching_damping, modes_at
 from hdrive_mbs.analysis.operating_point import at_speed, operating_point, with_load
 from hdrive_mbs.analysis.result import Result
@@ -58,18 +59,12 @@ class Campbell(Result):
 
     def tables(self) -> tuple[PrintedTable, ...]:
         """The branches at the first and the last speed, and the critical speeds."""
-        heads = ["mode"]
-        for speed in (self.speeds[0], self.speeds[-1]):
-            heads += [f"at {speed:g} rad/s: undamped [rad/s]", "damping ratio"]
-        ends = [(self.frequencies[row], self.damping_ratios[row]) for row in (0, -1)]
-        rows = tuple((str(k + 1), *(float(values[k]) for pair in ends for values in pair)) for k in range(self.frequencies.shape[1]))
         criticals = tuple(
             (float(speed), f"{self.order_numbers[order]:g} x {self.order_places[order]}", str(branch + 1))
             for speed, order, branch in zip(self.critical_speeds, self.critical_orders, self.critical_branches, strict=True)
         )
         met = PrintedTable(title="critical speeds", heads=("speed [rad/s]", "order", "mode"), rows=criticals)
-        none = PrintedTable(heads=(), rows=(), notes=("no critical speed in this range",))
-        return (PrintedTable(title="branches", heads=tuple(heads), rows=rows), met if criticals else none)
+        return (branch_table(self.speeds, self.frequencies, self.damping_ratios, "undamped"), met if criticals else NONE_MET)
 
     def columns(self) -> dict[str, np.ndarray]:
         table: dict[str, np.ndarray] = {"motor speed [rad/s]": self.speeds}

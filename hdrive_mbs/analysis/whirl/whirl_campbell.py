@@ -10,6 +10,7 @@ from heapq import merge
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.analysis.campbell_tables import NONE_MET, branch_table, unrounded
 from hdrive_mbs.analysis.drive_train.campbell import ExcitationOrder
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.whirl.block_branches import FEWEST, BlockBranches
@@ -30,9 +31,6 @@ HEAVY = 0.2
 
 BACKWARD = -0.98
 """Circularity below which a backward whirl is marked: forward circles, which alone unbalance drives, have 10 % of its amplitude."""
-
-ROUNDING = 1e-9
-"""A damping ratio below this is printed as 0."""
 
 ABOVE = 1.5
 """Modes up to this multiple of the highest order line are calculated where no number of branches is given."""
@@ -92,18 +90,10 @@ class WhirlCampbell(Result):
 
     def tables(self) -> tuple[PrintedTable, ...]:
         """The branches at the first and the last speed, the critical speeds, and where branches begin or cease to grow."""
-        heads = ["mode", "whirl"]
-        for speed in (self.speeds[0], self.speeds[-1]):
-            heads += [f"at {speed:g} rad/s: damped [rad/s]", "damping ratio"]
-        ends = [(self.frequencies[row], self.damping_ratios[row]) for row in (0, -1)]
-        rows = tuple(
-            (str(k + 1), word, *(_unrounded(float(values[k])) for pair in ends for values in pair)) for k, word in enumerate(self.whirl)
-        )
         criticals = {name: values for name, values in self.critical_columns().items() if not name.startswith("frequency")}
-        criticals["damping ratio [1]"] = np.array([_unrounded(float(value)) for value in self.critical_damping_ratios])
-        found = [PrintedTable(title="branches", heads=tuple(heads), rows=rows), thinned(criticals, title="critical speeds")]
-        if not len(self.critical_speeds):
-            found[1] = PrintedTable(heads=(), rows=(), notes=("no critical speed in this range",))
+        criticals["damping ratio [1]"] = np.array([unrounded(float(value)) for value in self.critical_damping_ratios])
+        found = [branch_table(self.speeds, self.frequencies, self.damping_ratios, "damped", self.whirl)]
+        found.append(thinned(criticals, title="critical speeds") if len(self.critical_speeds) else NONE_MET)
         if len(self.threshold_speeds):
             limits = {
                 "speed [rad/s]": self.threshold_speeds,
@@ -255,11 +245,6 @@ class _Threshold:
     branch: int
     frequency: float
     note: str
-
-
-def _unrounded(ratio: float) -> float:
-    """A damping ratio, 0 where it is rounding."""
-    return 0.0 if abs(ratio) < ROUNDING else ratio
 
 
 def _grid(speeds: Sequence[float] | FloatArray) -> FloatArray:
