@@ -17,10 +17,10 @@ OF_SPEEDS = 4.0
 """Multiple of the relative accuracy of amplitudes that speeds are computed with."""
 
 SHORTEST = 4
-"""A step is cut to a quarter at most, """
+"""A step is cut to a quarter at most where a run has many steps."""
 
 CHEAP = 50_000
-"""or as far as a run has no more steps than this."""
+"""Steps that a run may have with a step that is cut further."""
 
 SLOW = 1e-3
 """Share of the highest speed in the line that a spin counts as having at least: a housing hardly turns."""
@@ -71,7 +71,7 @@ def torsional_step(line: TurningAlone, step: float, allowed: float, newton_toler
     return TorsionalStep(
         step,
         remark=f"torsional vibration is too quick for the step of {step:.3g} s: {_off(first, line)} at some moments, and not right with "
-        f"{step / cut:.2g} s either; peaks of whirl hardly feel that, for speeds give a solver with a shorter step",
+        f"{step / cut:.2g} s either; where that matters give a solver with a shorter step",
     )
 
 

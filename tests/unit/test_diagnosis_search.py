@@ -534,8 +534,10 @@ def test_a_cause_of_a_pair_is_tried_at_its_other_places() -> None:
         assert pair.fitted.hypothesis.labels not in places
         assert len(places) == len(others)
         with Team(1) as team:
-            assert moved(team, both, [pair, *others], tried) != []  # from the best of them
+            more = moved(team, both, [pair, *others], tried)  # from the best of them, and nothing that was tried
             assert moved(team, both, [], tried) == []
+        assert more
+        assert not {item.fitted.hypothesis.labels for item in more} & {pair.fitted.hypothesis.labels, *places}
 
 
 def test_pairs_that_lie_close_together_are_fitted_to_the_end_before_one_is_chosen(

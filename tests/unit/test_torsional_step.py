@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 
 import numpy as np
 import pytest
@@ -68,10 +67,11 @@ def test_what_no_step_follows_is_said_and_by_how_much() -> None:
     assert "torsional vibration is too quick for the step" in run.status
     said = float(run.status.partition("would be off by ")[2].partition(" rad/s")[0])
     error = float(np.max(np.abs(run.values["pulley.speed"] - speeds(run.times))))
-    assert said == pytest.approx(error, rel=0.5)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        hm.run_up(line(torque=1e-3), 0.1, initial_speed=100.0)  # a torque that hardly moves it: nothing to say
+    assert said == pytest.approx(error, rel=0.5)  # out of phase it is twice the size of the vibration at most, in phase with luck nothing
+    # the same line under a torque that hardly moves it: the vibration is there, and too small to matter
+    gentle = hm.run_up(line(torque=1e-3), 0.1, initial_speed=100.0)
+    assert "torsional" not in gentle.status
+    assert "cut to" not in gentle.settings["step"]
 
 
 def test_simulate_takes_the_cut_step_too_and_warns_where_none_is_short_enough() -> None:
