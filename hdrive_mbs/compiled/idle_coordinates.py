@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from hdrive_mbs.compiled.groups import groups
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.coupling import Gyroscope
@@ -29,17 +27,21 @@ def idle_coordinates(network: Network, initial: Mapping[str, float] | None = Non
 
     initial : values and rates at the start by name (``"rotor.z"``, ``"rotor.z_rate"``)
     """
-    names = [body.name for body in network.bodies]
-    index = {name: k for k, name in enumerate(names)}
-    joined = np.zeros((len(names),) * 2, bool)
+    leader = {body.name: body.name for body in network.bodies}
     moved = {body.name for body in network.bodies if not body.lateral}
-    given = {name: abs(value) for name, value in (initial or {}).items() if name.removesuffix("_rate") in index}
+    given = {name: abs(value) for name, value in (initial or {}).items() if name.removesuffix("_rate") in leader}
     smallest = ROUNDING * max(given.values(), default=0.0)
     moved |= {name.removesuffix("_rate") for name, value in given.items() if value > smallest}
 
+    def led(name: str) -> str:
+        while leader[name] != name:
+            name = leader[name]
+        return name
+
     def join(group: Iterable[str]) -> None:
-        at = [index[name] for name in group if name in index]
-        joined[np.ix_(at, at)] = True
+        first, *others = [led(name) for name in group if name in leader] or [""]
+        for other in others:
+            leader[other] = first
 
     for rotor in network.rotors:
         x, y, _, psi, theta, _ = rotor.coordinates
@@ -60,10 +62,8 @@ def idle_coordinates(network: Network, initial: Mapping[str, float] | None = Non
             moved.add(element.coordinate)
         elif not isinstance(element, StateRate):
             moved |= set(element.contribution(recording_moment()))
-    joined |= np.eye(len(names), dtype=bool)
-    members = [[names[k] for k in at] for at in groups(joined)]
-    idle = {name for group in members if moved.isdisjoint(group) for name in group}
-    return tuple(name for name in names if name in idle)
+    busy = {led(name) for name in moved if name in leader}
+    return tuple(name for name in leader if led(name) not in busy)
 
 
 def without_idle(network: Network, initial: Mapping[str, float] | None = None) -> Network:

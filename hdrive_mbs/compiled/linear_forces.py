@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.compiled.groups import groups
-from hdrive_mbs.compiled.springs import NEGLIGIBLE, Spring, springs
+from hdrive_mbs.compiled.springs import NEGLIGIBLE, Spring, springs_of
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment
@@ -129,27 +129,17 @@ def _written(matrix: FloatArray) -> bytes:
 def _shares(size: int, stiffness: bytes, damping: bytes) -> tuple[_Share, ...]:
     """The parts of the stiffness and the damping of an element."""
     made: list[_Share] = []
-    known: dict[Sequence[int], tuple[FloatArray, list[Spring] | None]] = {}
     for is_stiffness, entries in ((True, stiffness), (False, damping)):
         matrix = np.frombuffer(entries).reshape(size, size)
         for at in groups(matrix != 0.0):
             part = matrix[np.array(at)[:, None], at]
-            found = _proportional(part, *known[at]) if at in known else springs(part)
-            known[at] = part, found
+            found = springs_of(part)
             if found is None or sum(2 * np.count_nonzero(spring.factors) for spring in found) > np.count_nonzero(part):
                 full = tuple((at[i], at[j], float(part[i, j])) for i, j in np.argwhere(part).tolist())
                 made.append(_Share(is_stiffness, (), full))
             else:
                 made.append(_Share(is_stiffness, tuple((spring.stiffness, _direction(at, spring)) for spring in found), ()))
     return tuple(made)
-
-
-def _proportional(part: FloatArray, before: FloatArray, found: list[Spring] | None) -> list[Spring] | None:
-    """The springs of a matrix, taken from those of another one if it is a multiple of it."""
-    ratio = float(part[0, 0] / before[0, 0]) if before[0, 0] else 0.0
-    if found is None or not ratio > 0.0 or np.max(np.abs(part - ratio * before)) > 1e-15 * np.max(np.abs(part)):
-        return springs(part)
-    return [Spring(ratio * spring.stiffness, spring.factors) for spring in found]
 
 
 def _direction(at: Sequence[int], spring: Spring) -> _Direction:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+from collections import OrderedDict
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,14 @@ FloatArray = npt.NDArray[np.float64]
 
 NEGLIGIBLE = 1e-11
 """Relative size of what is rounding in a matrix whose diagonal is scaled to 1."""
+
+
+PROPORTIONAL = 4e-15
+"""Relative size of what is rounding in two matrices that are multiples of each other."""
+KEPT = 512
+"""Matrices whose springs are kept."""
+
+_known: OrderedDict[bytes, tuple[FloatArray, tuple[Spring, ...] | None]] = OrderedDict()
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +64,22 @@ def springs(matrix: FloatArray) -> list[Spring] | None:
         found.append(Spring(stiffness, factors))
         rest = rest - stiffness * np.outer(scale * factors, scale * factors)
     return found
+
+
+def springs_of(matrix: FloatArray) -> tuple[Spring, ...] | None:
+    """Likewise, taken from those of an earlier matrix if this one is a multiple of it: a section with another modulus, its damping."""
+    ratio = float(matrix[0, 0])
+    if not ratio > 0.0:
+        return None
+    shape = matrix / ratio
+    key = np.round(shape, 6).tobytes()
+    if key not in _known or np.max(np.abs(shape - _known[key][0])) > PROPORTIONAL * np.max(np.abs(shape)):
+        found = springs(shape)
+        _known[key] = shape, None if found is None else tuple(found)
+        if len(_known) > KEPT:
+            _known.popitem(last=False)
+    alike = _known[key][1]
+    return None if alike is None else tuple([Spring(ratio * spring.stiffness, spring.factors) for spring in alike])
 
 
 def _factors(rest: FloatArray, span: FloatArray, scale: FloatArray) -> FloatArray:

@@ -46,15 +46,17 @@ class Simulator:
 
     trials : at least one;  step : longest step of the integration [s]
     every : compare only each such sample: a cheaper look, less sharp
+    again : whether what does not stay finite is run again with half the step: what stiffens a line may need it where the nominal model
+        does not
 
     Residuals are measured minus simulated in standard deviations of the noise, all columns of all trials one after
     the other (``segments``); ``fit`` and ``held_out`` say which of them a fit may see.
     """
 
-    def __init__(self, trials: Sequence[Trial], step: float, every: int = 1) -> None:
+    def __init__(self, trials: Sequence[Trial], step: float, every: int = 1, *, again: bool = True) -> None:
         if not trials:
             raise ParameterError("A diagnosis needs at least one record.")
-        self.trials, self.step, self.every = tuple(trials), step, every
+        self.trials, self.step, self.every, self.again = tuple(trials), step, every, again
         segments: list[Segment] = []
         fit: list[Mask] = []
         held: list[Mask] = []
@@ -161,7 +163,12 @@ class Simulator:
         late = {column for column, item in trial.measured.items() if item.late}
         fold = 2 if late else 1
         lines, angles = [start.line for start in starts], [start.angles for start in starts]
-        runs = run_many(lines, fold * trial.samples, trial.every / fold, step=self.step, angles=angles, speeds=trial.speeds)
+        samples, every = fold * trial.samples, trial.every / fold
+        runs = run_many(lines, samples, every, step=self.step, angles=angles, speeds=trial.speeds)
+        wild = [k for k, run in enumerate(runs) if self.again and isinstance(run, SimulationError)]
+        some, at = [lines[k] for k in wild], [angles[k] for k in wild]
+        for k, run in zip(wild, run_many(some, samples, every, step=0.5 * self.step, angles=at, speeds=trial.speeds), strict=True):
+            runs[k] = run
         self.runs += len(lines)
         found: list[Values | None] = []
         for run in runs:

@@ -17,7 +17,7 @@ from hdrive_mbs.compiled.idle_coordinates import idle_coordinates, without_idle
 from hdrive_mbs.compiled.line import CompiledLine, CompiledRun
 from hdrive_mbs.compiled.linear_forces import linear_forces
 from hdrive_mbs.compiled.rotor_equations import coupled_accelerations
-from hdrive_mbs.compiled.springs import springs
+from hdrive_mbs.compiled.springs import springs, springs_of
 from hdrive_mbs.compiled.step_limit import longest_step
 from hdrive_mbs.errors import ParameterError, PlaceError, SimulationError
 from hdrive_mbs.network.matrix_element import MatrixElement
@@ -195,6 +195,22 @@ def test_springs_are_the_matrix_again(n: int, rank: int) -> None:
 @pytest.mark.parametrize("matrix", [np.array([[1.0, 0.5], [-0.5, 1.0]]), np.array([[1.0, 2.0], [2.0, 1.0]]), np.diag([1.0, -1.0])])
 def test_a_matrix_without_springs_has_none(matrix: FloatArray) -> None:
     assert springs(matrix) is None
+
+
+@pytest.mark.parametrize("ratio", [1.0, 3.7e-5, 1.02])
+def test_springs_of_a_multiple_are_those_of_the_matrix(ratio: float) -> None:
+    """Taken from what is kept, also where a matrix that is nearly a multiple came in between."""
+    rng = np.random.default_rng(8)
+    matrix = random_matrix(rng, 4, 2)
+    near = matrix * (1.0 + 1e-9)
+    near[0, 0] = matrix[0, 0] * (1.0 + 1e-7)
+    springs_of(matrix)
+    springs_of(near)
+    found = springs_of(ratio * matrix)
+    assert found is not None
+    scale = np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))
+    made = sum(spring.stiffness * np.outer(spring.factors, spring.factors) for spring in found)
+    assert np.max(np.abs(made - ratio * matrix) / scale) < 1e-10 * ratio
 
 
 def test_forces_of_all_kinds_of_matrices_are_those_of_the_matrices() -> None:

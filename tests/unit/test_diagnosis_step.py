@@ -1,0 +1,63 @@
+"""The step of a diagnosis: as long as the fastest vibration of the nominal model lets it be, and half of it for what stiffens the line."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import hdrive_mbs as hm
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.step import suitable_step
+from hdrive_mbs.diagnosis.trial import Trial
+from hdrive_mbs.diagnosis.unknowns import Factor
+
+EVERY, SAMPLES, INERTIA = 1e-3, 400, 1e-3
+REACH = 2.0 * math.sqrt(2.0)
+"""Step times angular frequency up to which the classical Runge-Kutta method does not let a vibration grow."""
+
+
+def trial(rate: float) -> Trial:
+    """Two inertias whose vibration against each other has this angular frequency [rad/s], turned by a steady torque."""
+    scene = hm.Scene(
+        name="pair",
+        parts={
+            "motor": hm.Motor(inertia=INERTIA, characteristic=hm.TorqueHistory(times=(0.0, 1.0), torques=(1e-3, 1e-3))),
+            "shaft": hm.Shaft(stiffness=0.5 * INERTIA * rate**2, damping=0.0),
+            "load": hm.Inertia(inertia=INERTIA),
+        },
+        connections=[("motor", "shaft", "load")],
+    )
+    return Trial(
+        name="run",
+        scene=scene,
+        every=EVERY,
+        columns={"angle": np.zeros(SAMPLES)},
+        measured={"angle": Measured(channel="load.angle", noise=1e-3)},
+        held_out=np.zeros(SAMPLES, bool),
+    )
+
+
+@pytest.mark.parametrize("parts", [2, 3, 4, 6, 8])
+def test_a_step_is_the_longest_part_of_a_sample_at_which_nothing_grows(parts: int) -> None:
+    longest = REACH * parts / EVERY  # of the angular frequencies that this part of a sample can follow
+    assert suitable_step([trial(0.95 * longest)], ()) == pytest.approx(EVERY / parts)
+    assert suitable_step([trial(1.1 * longest)], ()) < 0.9 * EVERY / parts
+
+
+def test_a_point_that_grows_at_the_step_is_run_with_half_of_it() -> None:
+    rate = 0.95 * REACH * 3 / EVERY
+    given = [trial(rate)]
+    stiff = Hypothesis(factors=(Factor("", name="stiffness", nominal={"shaft.stiffness": 0.5 * INERTIA * rate**2}, sigma=0.1),))
+    nominal, stiffer = np.zeros(1), np.array([4.0])  # 1.4 times as stiff: 1.18 times as fast
+    step = suitable_step(given, ())
+    alone = Simulator(given, step, again=False).residuals(stiff, [nominal, stiffer])
+    assert alone[0] is not None
+    assert alone[1] is None
+    first, second = Simulator(given, step).residuals(stiff, [nominal, stiffer])
+    [halved] = Simulator(given, 0.5 * step, again=False).residuals(stiff, [stiffer])
+    np.testing.assert_array_equal(first, alone[0])
+    np.testing.assert_array_equal(second, halved)
