@@ -110,7 +110,13 @@ def _second(
     best = min(together, key=lambda item: item.fitted.cost)
     said("exchanging causes of the best pair", 0, 1)
     known = [*together, *swapped(team, coarse, best, first.suspect.label, single.labels[:SINGLES])]
-    return pair, contenders(team, coarse, [*known, *moved(team, coarse, known, tried)], first)
+    found = contenders(team, coarse, known, first)
+    if left(found[0].fitted) > enough(null, LEFT):
+        # the first cause was chosen while the second was missing
+        for item in alone(team, coarse, found[0], suspects(null.hypothesis, groups, tried)):
+            more = search(team, coarse, item.fitted, groups, tried, depth=SHALLOW, report=partial(_said, said, "first cause again"))
+            found = contenders(team, coarse, [*found, *more.found], first)
+    return pair, contenders(team, coarse, [*found, *moved(team, coarse, found, tried)], first)
 
 
 def _said(said: Report, about: str, stage: str, done: int, total: int) -> None:

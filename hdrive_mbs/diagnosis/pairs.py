@@ -79,15 +79,13 @@ def alone(team: Team, simulator: Simulator, pair: Found, everything: Sequence[Su
 
 
 def moved(team: Team, simulator: Simulator, pairs: Sequence[Found], tried: Sequence[Candidate]) -> list[Found]:
-    """The best pair with one of its causes at each of the other places where it may sit, as far as these pairs were not tried.
+    """The best pair with one of its causes at each of the other places where it may sit, but where another of the pairs has it.
 
     The place of a cause was chosen while the other one was missing, or among a few that looked best: both ends of a stiff shaft
-    look alike then.
+    look alike then.  Friction at the wrong one of them comes close to the right one from its final values alone.
 
-    tried : effects and places that are admitted
+    pairs : at least one, fitted to the end;  tried : effects and places that are admitted
     """
-    if not pairs:
-        return []
     best = min(pairs, key=lambda item: item.fitted.cost)
     full, z = best.fitted.hypothesis.rescaled(best.fitted.z)
     known = {_causes(item) for item in pairs}
@@ -119,8 +117,6 @@ def contenders(team: Team, simulator: Simulator, pairs: Sequence[Found], first: 
     ranked = list(best.values())
     least = ranked[0].fitted.cost
     near = [item for item in ranked if item.fitted.cost - least <= NEARLY * max(first.fitted.cost - least, 0.0)][:CONTENDERS]
-    if len(near) < 2:
-        return (ranked[0],)
     fits = team.map(run_task, simulator, [further(item.fitted) for item in near])
     return tuple(sorted(those_that_ran([item.suspect for item in near], fits), key=lambda item: item.fitted.cost)) or (ranked[0],)
 

@@ -30,7 +30,7 @@ class CouplingBacklash(LawEffect):
     backlash: float = parameter("rad", "full width b of the gap", low=0.0, high=0.2, typical=(1e-5, 0.05))
 
     family: ClassVar[str] = "backlash"
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"backlash": (1e-4, 7e-4, 4e-3)}
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"backlash": (1.5e-5, 1e-4, 7e-4, 4e-3)}
     signature: ClassVar[str] = "no torque over a range of twist; knocking at load reversals, a lower resonance at small amplitude"
 
     def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:

@@ -35,7 +35,7 @@ class FilmBacklash(LawEffect):
     film_damping: float = parameter("N m s/rad", "c, damping inside the gap", default=0.0, low=0.0, high=1e3, typical=(1e-3, 20.0))
 
     family: ClassVar[str] = "backlash"
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"backlash": (1e-4, 7e-4, 4e-3)}
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"backlash": (1.5e-5, 1e-4, 7e-4, 4e-3)}
     signature: ClassVar[str] = (
         "little torque over a range of twist, soft at its edges; load reversals without knocking, a lower resonance at small amplitude"
     )

@@ -35,7 +35,7 @@ class LostMotion(LawEffect):
 
     family: ClassVar[str] = "backlash"
     leads: ClassVar[bool] = True
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"width": (5e-5, 3e-4, 1.5e-3)}
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"width": (1e-5, 5e-5, 3e-4, 1.5e-3)}
     signature: ClassVar[str] = "no elastic torque over a range of twist; offset between both senses, a soft resonance at small torque"
 
     def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:

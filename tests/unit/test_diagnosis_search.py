@@ -11,6 +11,7 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis import all_samples
+from hdrive_mbs.diagnosis import gather as gather_
 from hdrive_mbs.diagnosis.all_samples import on_all_samples
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate, candidates
@@ -535,7 +536,6 @@ def test_a_cause_of_a_pair_is_tried_at_its_other_places() -> None:
         assert len(places) == len(others)
         with Team(1) as team:
             more = moved(team, both, [pair, *others], tried)  # from the best of them, and nothing that was tried
-            assert moved(team, both, [], tried) == []
         assert more
         assert not {item.fitted.hypothesis.labels for item in more} & {pair.fitted.hypothesis.labels, *places}
 
@@ -560,6 +560,40 @@ def test_pairs_that_lie_close_together_are_fitted_to_the_end_before_one_is_chose
         found = contenders(team, simulator, [*pairs, again], first)
     assert [item.suspect.label[1] for item in found] == ["wave_generator", "motor"]
     assert [[added.at for added in item.added] for item in asked] == [["load", "motor"], ["load", "wave_generator"]]
+
+
+@pytest.mark.parametrize(("leaves", "again"), [(1.8, True), (1.0, False)])
+def test_the_first_of_two_causes_is_looked_for_again_beside_the_second_where_both_leave_something(
+    simulator: Simulator, near: Fitted, monkeypatch: pytest.MonkeyPatch, leaves: float, again: bool
+) -> None:
+    """The best single cause stands at the load while the second is missing; beside that one, at the motor, it is the wave generator's."""
+
+    def found(chi: float, cost: float, *places: str) -> Found:
+        return Found(suspected(places[-1]), dataclasses.replace(near, hypothesis=drags(*places), chi_fit=chi, chi_held=chi, cost=cost), 1e4)
+
+    null = dataclasses.replace(near, chi_fit=4.0, chi_held=4.0, cost=9000.0)
+    second = found(3.6, 8500.0, "motor")
+    pairs = {"load": found(leaves, 5000.0, "load", "motor"), "motor": found(1.0, 4000.0, "motor", "wave_generator")}
+    asked: list[str] = []
+
+    def search(team: Team, coarse: Simulator, base: Fitted, *more: object, **how: object) -> Search:
+        asked.append(base.hypothesis.added[-1].at)
+        return Search(base, (pairs[asked[-1]],))
+
+    for name, made in {
+        "search": search,
+        "joined": lambda *some: [],
+        "swapped": lambda *some: [],
+        "moved": lambda *some: [],
+        "alone": lambda *some: [second],
+        "contenders": lambda team, coarse, some, first: tuple(sorted(some, key=lambda item: item.fitted.cost)),
+    }.items():
+        monkeypatch.setattr(f"hdrive_mbs.diagnosis.gather.{name}", made)
+    single = Search(null, (found(2.0, 6000.0, "load"),))
+    with Team(1) as team:
+        _, best = gather_._second(team, simulator, null, {}, [], single, (), lambda *said: None)
+    assert asked == (["load", "motor"] if again else ["load"])
+    assert best[0] is pairs["motor" if again else "load"]
 
 
 def test_other_places_of_the_best_families_that_looks_passed_over_are_named(near: Fitted) -> None:
