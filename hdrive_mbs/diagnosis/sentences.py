@@ -26,6 +26,8 @@ LEFT = (
 )
 CERTAIN, EXCLUDED = 0.9, 0.01
 """Probabilities of a place from which a gap lies there, and up to which it does not."""
+LIKELY, UNLIKELY = 0.5, 0.1
+"""Those from which a reader takes the gap to lie there, and up to which not."""
 FAR = 3.0
 """Standard deviations of its tolerance beyond which a parameter that is not claimed is told beside the verdict."""
 SIGMA = (
@@ -95,12 +97,21 @@ def inexact(diagnosis: Diagnosis) -> str:
 
 def _elsewhere(diagnosis: Diagnosis) -> str:
     """A warning where the gap lies at another place than all that is claimed."""
-    at = {cause.at.partition(".")[0] for cause in diagnosis.causes}
+    first = _somewhere_else(diagnosis, CERTAIN, EXCLUDED)
+    at = listed(_claimed_at(diagnosis))
+    return f" By its place the gap lies at {first}, not at {at}: a cause there is likelier than what is claimed." if first else ""
+
+
+def _claimed_at(diagnosis: Diagnosis) -> list[str]:
+    return sorted({cause.at.partition(".")[0] for cause in diagnosis.causes})
+
+
+def _somewhere_else(diagnosis: Diagnosis, sure: float, excluded: float) -> str:
+    """The likeliest place of the gap, if that is as sure as this and all that is claimed sits at places that are excluded."""
+    at = _claimed_at(diagnosis)
     own = max((place.probability for place in diagnosis.where if place.at.partition(".")[0] in at), default=0.0)
     first = diagnosis.where[0] if diagnosis.where else None
-    if first is None or first.at == NOWHERE or first.probability < CERTAIN or own > EXCLUDED:
-        return ""
-    return f" By its place the gap lies at {first.at}, not at {listed(sorted(at))}: a cause there is likelier than what is claimed."
+    return "" if first is None or first.at == NOWHERE or first.probability < sure or own > excluded else first.at
 
 
 def gap_sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -141,7 +152,20 @@ def where_sentences(diagnosis: Diagnosis, top: int | None = None) -> tuple[str, 
         return ()
     shown = tuple(where(place) for place in diagnosis.where[:top])
     full = [place for place in diagnosis.where[:top] if place.share >= ALL and not place.parameter]
-    return (*shown, WHY) if len(full) > 1 else shown
+    return (*shown, *([WHY] if len(full) > 1 else []), *_fitting(diagnosis))
+
+
+def _fitting(diagnosis: Diagnosis) -> tuple[str, ...]:
+    """That a cause which leaves noise alone is not refuted by a list that puts the gap elsewhere; nothing where there is none such."""
+    if diagnosis.verdict not in ("effect", "sensor") or not diagnosis.gaps or diagnosis.gap.effect.value > REST * diagnosis.gap.floor:
+        return ()
+    first = _somewhere_else(diagnosis, LIKELY, UNLIKELY)
+    at = listed(_claimed_at(diagnosis))
+    said = (
+        f"What is claimed at {at} leaves noise alone and is not in doubt for its rank here: this list asks where one signal of any form,"
+        f" added to the linearised model, explains most of what the refitted nominal model leaves, and at {first} it does."
+    )
+    return (said,) if first else ()
 
 
 def only_noise(diagnosis: Diagnosis) -> bool:

@@ -71,8 +71,34 @@ def test_where_nothing_but_noise_is_left_no_place_and_no_range_is_named() -> Non
 def test_of_places_that_explain_the_same_the_report_says_why_one_wins() -> None:
     places = (Place(at="arm", probability=0.999, gain=99.0, share=0.99995), Place(at="motor", probability=0.001, gain=30.0, share=0.99995))
     found = dataclasses.replace(SAMPLES["effect"](), where=places)
-    assert sentences.where_sentences(found)[-1].endswith("the likelier is the one that needs less signal for it.")
-    assert len(sentences.where_sentences(dataclasses.replace(found, where=places[:1]))) == 1
+    said = "the likelier is the one that needs less signal for it."
+    assert sum(text.endswith(said) for text in sentences.where_sentences(found)) == 1
+    assert not any(text.endswith(said) for text in sentences.where_sentences(dataclasses.replace(found, where=places[:1])))
+
+
+@pytest.mark.parametrize(
+    ("chances", "left", "verdict", "said"),
+    [
+        ((0.905, 0.01), 1.01, "effect", True),
+        ((0.905, 0.01), 27.0, "effect", False),
+        ((0.6, 0.3), 1.01, "effect", False),
+        ((0.01, 0.9), 1.01, "effect", False),
+        ((0.905, 0.01), 1.01, "parameter", False),
+    ],
+)
+def test_a_cause_that_leaves_noise_alone_is_not_refuted_by_the_list_of_places(
+    chances: tuple[float, float], left: float, verdict: str, said: bool
+) -> None:
+    """Backlash of an output shaft beside the gear's own lost motion: one signal at the gear stands for nearly all of it."""
+    found = SAMPLES["effect"]()
+    [cause] = found.causes
+    places = sorted(zip(("gear", f"{cause.at}.law"), chances, strict=True), key=lambda item: -item[1])
+    where = tuple(Place(at=at, probability=chance, gain=9.0, share=0.5) for at, chance in places)
+    again = dataclasses.replace(found, gaps=diagnosis_samples.gaps(34.2, 28.1, left), where=where, verdict=verdict)
+    lines = [text for text in sentences.where_sentences(again) if "leaves noise alone" in text]
+    assert [text.startswith(f"What is claimed at {cause.at} leaves") and text.endswith("and at gear it does.") for text in lines] == [
+        True
+    ] * said
 
 
 @pytest.mark.parametrize(
