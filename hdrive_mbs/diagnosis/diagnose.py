@@ -38,6 +38,7 @@ from hdrive_mbs.diagnosis.verdict import NONE, UNKNOWN, Claim, judge, left
 from hdrive_mbs.diagnosis.verify import engine_difference
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import HdriveError, ParameterError
+from hdrive_mbs.freed_memory import give_back
 from hdrive_mbs.records.collection import Records
 from hdrive_mbs.records.record import Record
 from hdrive_mbs.scene import Scene
@@ -106,6 +107,7 @@ def diagnose(
     found = answer(known, chosen, evidence, started=started, pictures=pictures)
     notes = (*left_out(tried, evidence.single, step), *(() if journal is None else journal.said))
     driven = {name: item.path for name, item in known.inputs.items()}
+    give_back()
     return dataclasses.replace(found, notes=(*found.notes, *notes), warnings=warnings, inputs=driven)
 
 

@@ -10,6 +10,7 @@ from hdrive_mbs.diagnosis.locate.latent_force import TurnedForce
 from hdrive_mbs.diagnosis.result import NOWHERE, Place
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.errors import HdriveError
+from hdrive_mbs.freed_memory import give_back
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -31,6 +32,12 @@ def located(fine: Simulator, about: Fitted) -> Located:
 
     Without places, and with the reason as doubt, where they cannot be looked for.
     """
+    found = _located(fine, about)
+    give_back()
+    return found
+
+
+def _located(fine: Simulator, about: Fitted) -> Located:
     try:
         localiser = Localiser(fine, about)
         places = localiser.places()
