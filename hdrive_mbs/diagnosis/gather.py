@@ -28,7 +28,8 @@ LEFT = 1.1
 strong one (``enough``).  In our own third drive set a lag beside a drag left 1.19 and 1.48 of 46, and was not looked for at 1.2."""
 TAKEN = 0.05
 """Share of the nominal model's cost above that of noise that the best single cause has to take away before a second one is looked
-for: beside one that explains next to nothing a second would be another first."""
+for: beside one that explains next to nothing a second would be another first.  Also of the first cause's cost that a second has to take
+away before the first is looked for again beside it."""
 SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 """Of the search for a second cause."""
 SINGLES = 3
@@ -97,7 +98,8 @@ def _second(
 ) -> tuple[Search | None, tuple[Found, ...]]:
     """The pairs of causes that may be the best, where one leaves something: known ones together, and else a search for a second one."""
     first = single.found[0] if single.found else None
-    if first is None or not wants_second(null, first, int(np.count_nonzero(coarse.fit))):
+    samples = int(np.count_nonzero(coarse.fit))
+    if first is None or not wants_second(null, first, samples):
         return None, ()
     rivals = {item.suspect.label: item for item in (*single.labels[1 : JOINED + 1], *there[:1])}
     together = joined(team, coarse, first, tuple(rivals.values()))
@@ -111,7 +113,8 @@ def _second(
     said("exchanging causes of the best pair", 0, 1)
     known = [*together, *swapped(team, coarse, best, first.suspect.label, single.labels[:SINGLES])]
     found = contenders(team, coarse, known, first)
-    if left(found[0].fitted) > enough(null, LEFT):
+    gained = first.fitted.cost - found[0].fitted.cost
+    if left(found[0].fitted) > enough(null, LEFT) and gained > TAKEN * max(first.fitted.cost - 0.5 * samples, 0.0):
         # the first cause was chosen while the second was missing
         for item in alone(team, coarse, found[0], suspects(null.hypothesis, groups, tried)):
             more = search(team, coarse, item.fitted, groups, tried, depth=SHALLOW, report=partial(_said, said, "first cause again"))
