@@ -150,6 +150,8 @@ def gather(
     pair, double = _second(team, coarse, null, groups, tried, single, there, said)
     if double:
         single = _with(single, alone(team, coarse, double[0], suspects(null.hypothesis, groups, tried)))
+        if not wants_second(null, single.found[0], int(np.count_nonzero(coarse.fit))):
+            double = ()  # it stood beside a wrong first one: had this been found at once, no second would have been looked for
     serious = single.labels[:SINGLES]
     last = on_all_samples(team, fine, null, [item.fitted for item in (*serious, *double)], place, partial(said, "all samples"))
     final = [

@@ -12,7 +12,7 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis import all_samples
 from hdrive_mbs.diagnosis import gather as gather_
-from hdrive_mbs.diagnosis.all_samples import on_all_samples
+from hdrive_mbs.diagnosis.all_samples import Last, on_all_samples
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate, candidates
 from hdrive_mbs.diagnosis.choosing import beyond, enough, passed_over, spread_out
@@ -600,6 +600,43 @@ def test_the_first_of_two_causes_is_looked_for_again_beside_the_second_where_bot
         _, best = gather_._second(team, simulator, null, {}, [], single, (), lambda *said: None)
     assert asked == (["load", "motor"] if again else ["load"])
     assert best[0] is pairs["motor" if again else "load"]
+
+
+@pytest.mark.parametrize(("alone_leaves", "kept"), [(1.02, 0), (1.5, 1)])
+def test_a_pair_is_given_up_where_its_second_cause_does_without_the_first(
+    simulator: Simulator, near: Fitted, monkeypatch: pytest.MonkeyPatch, alone_leaves: float, kept: int
+) -> None:
+    """A wrong stiffness came out beside backlash alone at first; a pair with it takes the rounded corners of the machine besides."""
+
+    def found(chi: float, odds: float, *places: str) -> Found:
+        cost = 0.5 * np.count_nonzero(simulator.fit) * chi
+        return Found(
+            suspected(places[-1]), dataclasses.replace(near, hypothesis=drags(*places), chi_fit=chi, chi_held=chi, cost=cost), log_odds=odds
+        )
+
+    null = dataclasses.replace(near, chi_fit=70.0, chi_held=70.0, cost=9e6)
+    pair = found(1.003, 5200.0, "load", "motor")
+    asked: list[Fitted] = []
+
+    def on_all(team: Team, fine: Simulator, base: Fitted, fits: list[Fitted], *more: object) -> Last:
+        asked.extend(fits)
+        return Last(base, base, tuple(fits), NOT_LOOKED)
+
+    for name, made in {
+        "fit_nominal": lambda coarse, factors: null,
+        "search": lambda *some, **how: Search(null, (found(3.4, 4400.0, "load"),)),
+        "_there": lambda *some: (None, ()),
+        "_second": lambda *some: (None, (pair,)),
+        "alone": lambda *some: [found(alone_leaves, 0.0, "motor")],
+        "scored": lambda item, base: dataclasses.replace(item, log_odds=base.cost - item.fitted.cost),
+        "on_all_samples": on_all,
+    }.items():
+        monkeypatch.setattr(f"hdrive_mbs.diagnosis.gather.{name}", made)
+    with Team(1) as team:
+        evidence = gather_.gather(simulator, simulator, factors_of(BENCH), {}, [], team)
+    assert len(evidence.pairs) == kept
+    assert (pair.fitted in asked) == bool(kept)
+    assert evidence.single.found[0].suspect.label == ("quadratic_drag", "motor")
 
 
 def test_other_places_of_the_best_families_that_looks_passed_over_are_named(near: Fitted) -> None:
