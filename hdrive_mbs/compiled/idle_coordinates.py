@@ -39,9 +39,9 @@ def idle_coordinates(network: Network, initial: Mapping[str, float] | None = Non
         return name
 
     def join(group: Iterable[str]) -> None:
-        first, *others = [led(name) for name in group if name in leader] or [""]
-        for other in others:
-            leader[other] = first
+        leaders = [led(name) for name in group if name in leader]
+        for other in leaders[1:]:
+            leader[other] = leaders[0]
 
     for rotor in network.rotors:
         x, y, _, psi, theta, _ = rotor.coordinates

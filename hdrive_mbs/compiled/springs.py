@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections import OrderedDict
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,14 +18,8 @@ FloatArray = npt.NDArray[np.float64]
 
 NEGLIGIBLE = 1e-11
 """Relative size of what is rounding in a matrix whose diagonal is scaled to 1."""
-
-
-PROPORTIONAL = 4e-15
-"""Relative size of what is rounding in two matrices that are multiples of each other."""
-KEPT = 512
-"""Matrices whose springs are kept."""
-
-_known: OrderedDict[bytes, tuple[FloatArray, tuple[Spring, ...] | None]] = OrderedDict()
+DIGITS = 44
+"""Binary digits of the entries of a matrix that count: rounding, 4e-14 of it, is far below what is negligible."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,19 +60,20 @@ def springs(matrix: FloatArray) -> list[Spring] | None:
 
 
 def springs_of(matrix: FloatArray) -> tuple[Spring, ...] | None:
-    """Likewise, taken from those of an earlier matrix if this one is a multiple of it: a section with another modulus, its damping."""
-    ratio = float(matrix[0, 0])
-    if not ratio > 0.0:
+    """Likewise, found once for matrices that are multiples of each other: a section with another modulus, its damping."""
+    size = float(matrix[0, 0])
+    if not size > 0.0:
         return None
-    shape = matrix / ratio
-    key = np.round(shape, 6).tobytes()
-    if key not in _known or np.max(np.abs(shape - _known[key][0])) > PROPORTIONAL * np.max(np.abs(shape)):
-        found = springs(shape)
-        _known[key] = shape, None if found is None else tuple(found)
-        if len(_known) > KEPT:
-            _known.popitem(last=False)
-    alike = _known[key][1]
-    return None if alike is None else tuple([Spring(ratio * spring.stiffness, spring.factors) for spring in alike])
+    mantissas, exponents = np.frexp(matrix / size)
+    shape = np.ldexp(np.rint(np.ldexp(mantissas, DIGITS)), exponents - DIGITS) + 0.0  # without the sign of zeros
+    found = _springs(len(matrix), shape.tobytes())
+    return None if found is None else tuple([Spring(size * spring.stiffness, spring.factors) for spring in found])
+
+
+@functools.lru_cache(maxsize=512)
+def _springs(size: int, entries: bytes) -> tuple[Spring, ...] | None:
+    found = springs(np.frombuffer(entries).reshape(size, size))
+    return None if found is None else tuple(found)
 
 
 def _factors(rest: FloatArray, span: FloatArray, scale: FloatArray) -> FloatArray:

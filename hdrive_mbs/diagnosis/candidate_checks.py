@@ -55,7 +55,7 @@ def left_out(tried: Sequence[Candidate], found: Search, step: float) -> tuple[st
     every = f"None of the {number} candidates" if len(failed) == number else f"{len(failed)} of {number} candidates"
     could = "could be run" if len(failed) == number else "could not be run"
     return (
-        f"{every} {could} with their start values in steps of {1e3 * step:.3g} ms, and so were not tried: "
+        f"{every} {could} with their start values in steps of {1e3 * step:.3g} ms and half of that, and so were not tried: "
         f"{', '.join(failed[:LISTED])}{more}. Give a shorter step, or their fields other typical values.",
     )
 

@@ -72,7 +72,7 @@ def diagnose(
     candidates : effect classes to try; all of the library and whatever else has been imported if not given
     workers : processes; 1 if not given.  With more, a script needs the line ``if __name__ == "__main__":`` before the call
     folder : where fits are kept, so that an interrupted diagnosis goes on from there
-    step : of the integration [s]; chosen by halving if not given
+    step : of the integration [s], chosen if not given (``suitable_step``); what grows with it is run again with half of it
     report : called with (stage, done, total)
     pictures : with histories, located forces and maps for the report
     watch : called with all fits, for those who want more figures than the answer holds
@@ -107,6 +107,7 @@ def diagnose(
     found = answer(known, chosen, evidence, started=started, pictures=pictures)
     notes = (*left_out(tried, evidence.single, step), *(() if journal is None else journal.said))
     driven = {name: item.path for name, item in known.inputs.items()}
+    del evidence, coarse, fine, trials, trials_of, searched
     give_back()
     return dataclasses.replace(found, notes=(*found.notes, *notes), warnings=warnings, inputs=driven)
 

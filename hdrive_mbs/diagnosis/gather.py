@@ -28,8 +28,8 @@ LEFT = 1.1
 strong one (``enough``).  In our own third drive set a lag beside a drag left 1.19 and 1.48 of 46, and was not looked for at 1.2."""
 TAKEN = 0.05
 """Share of the nominal model's cost above that of noise that the best single cause has to take away before a second one is looked
-for: beside one that explains next to nothing a second would be another first.  Also of the first cause's cost that a second has to take
-away before the first is looked for again beside it."""
+for: beside one that explains next to nothing a second would be another first.  Also of the first one's cost above that of noise, which
+a second has to take away before the first is looked for again beside it."""
 SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 """Of the search for a second cause."""
 SINGLES = 3
@@ -95,12 +95,15 @@ def _second(
     single: Search,
     there: Sequence[Found],
     said: Report,
-) -> tuple[Search | None, tuple[Found, ...]]:
-    """The pairs of causes that may be the best, where one leaves something: known ones together, and else a search for a second one."""
+) -> tuple[Search | None, tuple[Found, ...], tuple[Found, ...]]:
+    """Where one cause leaves something: a search for a second one, pairs that may be the best, and second causes without the first.
+
+    Causes that are known are put together first, and a second one is searched for where none of these pairs explains the rest.
+    """
     first = single.found[0] if single.found else None
     samples = int(np.count_nonzero(coarse.fit))
     if first is None or not wants_second(null, first, samples):
-        return None, ()
+        return None, (), ()
     rivals = {item.suspect.label: item for item in (*single.labels[1 : JOINED + 1], *there[:1])}
     together = joined(team, coarse, first, tuple(rivals.values()))
     pair = None
@@ -108,18 +111,23 @@ def _second(
         pair = search(team, coarse, first.fitted, groups, tried, depth=SHALLOW, report=partial(_said, said, "second cause"))
         together = [*pair.found, *together]
     if not together:
-        return pair, ()
+        return pair, (), ()
     best = min(together, key=lambda item: item.fitted.cost)
     said("exchanging causes of the best pair", 0, 1)
     known = [*together, *swapped(team, coarse, best, first.suspect.label, single.labels[:SINGLES])]
     found = contenders(team, coarse, known, first)
+    everything = suspects(null.hypothesis, groups, tried)
+    others = alone(team, coarse, found[0], everything)
     gained = first.fitted.cost - found[0].fitted.cost
     if left(found[0].fitted) > enough(null, LEFT) and gained > TAKEN * max(first.fitted.cost - 0.5 * samples, 0.0):
         # the first cause was chosen while the second was missing
-        for item in alone(team, coarse, found[0], suspects(null.hypothesis, groups, tried)):
+        for item in others:
             more = search(team, coarse, item.fitted, groups, tried, depth=SHALLOW, report=partial(_said, said, "first cause again"))
             found = contenders(team, coarse, [*found, *more.found], first)
-    return pair, contenders(team, coarse, [*found, *moved(team, coarse, found, tried)], first)
+    pairs = contenders(team, coarse, [*found, *moved(team, coarse, found, tried)], first)
+    if pairs[0].suspect.label not in {item.suspect.label for item in others}:
+        others += alone(team, coarse, pairs[0], everything)
+    return pair, pairs, tuple(others)
 
 
 def _said(said: Report, about: str, stage: str, done: int, total: int) -> None:
@@ -147,11 +155,10 @@ def gather(
     single = search(team, coarse, null, groups, tried, report=said)
     place, there = _there(team, coarse, fine, null, single, tried, said)
     single = _with(single, there)
-    pair, double = _second(team, coarse, null, groups, tried, single, there, said)
-    if double:
-        single = _with(single, alone(team, coarse, double[0], suspects(null.hypothesis, groups, tried)))
-        if not wants_second(null, single.found[0], int(np.count_nonzero(coarse.fit))):
-            double = ()  # it stood beside a wrong first one: had this been found at once, no second would have been looked for
+    pair, double, others = _second(team, coarse, null, groups, tried, single, there, said)
+    single = _with(single, others)
+    if double and not wants_second(null, single.found[0], int(np.count_nonzero(coarse.fit))):
+        double = ()  # its second cause stood beside a wrong first one: had it been found at once, no other would have been looked for
     serious = single.labels[:SINGLES]
     last = on_all_samples(team, fine, null, [item.fitted for item in (*serious, *double)], place, partial(said, "all samples"))
     final = [

@@ -107,13 +107,11 @@ def contenders(team: Team, simulator: Simulator, pairs: Sequence[Found], first: 
 
     Friction of either end of a stiff shaft, say, differs by less than what a few steps bring.
 
-    first : the best single cause
+    pairs : at least one;  first : the best single cause
     """
     best: dict[frozenset[object], Found] = {}
     for item in sorted(pairs, key=lambda item: item.fitted.cost):
         best.setdefault(_causes(item), item)
-    if not best:
-        return ()
     ranked = list(best.values())
     least = ranked[0].fitted.cost
     near = [item for item in ranked if item.fitted.cost - least <= NEARLY * max(first.fitted.cost - least, 0.0)][:CONTENDERS]

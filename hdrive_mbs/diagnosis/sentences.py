@@ -26,6 +26,8 @@ LEFT = (
 )
 CERTAIN, EXCLUDED = 0.9, 0.01
 """Probabilities of a place from which a gap lies there, and up to which it does not."""
+MOST = 0.5
+"""Share of the gap that is most of it."""
 LIKELY, UNLIKELY = 0.5, 0.1
 """Those from which a reader takes the gap to lie there, and up to which not."""
 FAR = 3.0
@@ -98,20 +100,22 @@ def inexact(diagnosis: Diagnosis) -> str:
 def _elsewhere(diagnosis: Diagnosis) -> str:
     """A warning where the gap lies at another place than all that is claimed."""
     first = _somewhere_else(diagnosis, CERTAIN, EXCLUDED)
+    if first is None:
+        return ""
     at = listed(_claimed_at(diagnosis))
-    return f" By its place the gap lies at {first}, not at {at}: a cause there is likelier than what is claimed." if first else ""
+    return f" By its place the gap lies at {first.at}, not at {at}: a cause there is likelier than what is claimed."
 
 
 def _claimed_at(diagnosis: Diagnosis) -> list[str]:
     return sorted({cause.at.partition(".")[0] for cause in diagnosis.causes})
 
 
-def _somewhere_else(diagnosis: Diagnosis, sure: float, excluded: float) -> str:
+def _somewhere_else(diagnosis: Diagnosis, sure: float, excluded: float) -> Place | None:
     """The likeliest place of the gap, if that is as sure as this and all that is claimed sits at places that are excluded."""
     at = _claimed_at(diagnosis)
     own = max((place.probability for place in diagnosis.where if place.at.partition(".")[0] in at), default=0.0)
     first = diagnosis.where[0] if diagnosis.where else None
-    return "" if first is None or first.at == NOWHERE or first.probability < sure or own > excluded else first.at
+    return None if first is None or first.at == NOWHERE or first.probability < sure or own > excluded else first
 
 
 def gap_sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -160,12 +164,13 @@ def _fitting(diagnosis: Diagnosis) -> tuple[str, ...]:
     if diagnosis.verdict not in ("effect", "sensor") or not diagnosis.gaps or diagnosis.gap.effect.value > REST * diagnosis.gap.floor:
         return ()
     first = _somewhere_else(diagnosis, LIKELY, UNLIKELY)
-    at = listed(_claimed_at(diagnosis))
-    said = (
-        f"What is claimed at {at} leaves noise alone and is not in doubt for its rank here: this list asks where one signal of any form,"
-        f" added to the linearised model, explains most of what the refitted nominal model leaves, and at {first} it does."
+    at = _claimed_at(diagnosis)
+    if first is None or first.parameter or first.share < MOST or any(place.partition(".")[0] in at for place in first.tied):
+        return ()
+    return (
+        f"What is claimed at {listed(at)} leaves noise alone and is not in doubt for its rank here: this list asks where one signal of"
+        f" any form, added to the linearised model, explains most of the gap, and at {first.at} it does.",
     )
-    return (said,) if first else ()
 
 
 def only_noise(diagnosis: Diagnosis) -> bool:

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.compiled.line import run_many
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines, Start
 from hdrive_mbs.diagnosis.noise import Whitener
 from hdrive_mbs.diagnosis.resting import repeated
 from hdrive_mbs.diagnosis.robust import Blocks
 from hdrive_mbs.diagnosis.trial import Trial
+from hdrive_mbs.diagnosis.trial_runs import measured_in, run_trial
 from hdrive_mbs.errors import ParameterError, SimulationError
 
 FloatArray = npt.NDArray[np.float64]
@@ -46,17 +46,16 @@ class Simulator:
 
     trials : at least one;  step : longest step of the integration [s]
     every : compare only each such sample: a cheaper look, less sharp
-    again : whether what does not stay finite is run again with half the step: what stiffens a line may need it where the nominal model
-        does not
+    parts : in which each step is divided;  again : whether what grows at it is run again with half of it, see ``run_trial``
 
     Residuals are measured minus simulated in standard deviations of the noise, all columns of all trials one after
     the other (``segments``); ``fit`` and ``held_out`` say which of them a fit may see.
     """
 
-    def __init__(self, trials: Sequence[Trial], step: float, every: int = 1, *, again: bool = True) -> None:
+    def __init__(self, trials: Sequence[Trial], step: float, every: int = 1, *, parts: int = 1, again: bool = True) -> None:
         if not trials:
             raise ParameterError("A diagnosis needs at least one record.")
-        self.trials, self.step, self.every, self.again = tuple(trials), step, every, again
+        self.trials, self.step, self.every, self.parts, self.again = tuple(trials), step, every, parts, again
         segments: list[Segment] = []
         fit: list[Mask] = []
         held: list[Mask] = []
@@ -160,24 +159,10 @@ class Simulator:
         return [None if key is None else found[key] for key in keys]
 
     def _run(self, trial: Trial, starts: Sequence[Start]) -> list[Values | None]:
-        late = {column for column, item in trial.measured.items() if item.late}
-        fold = 2 if late else 1
         lines, angles = [start.line for start in starts], [start.angles for start in starts]
-        samples, every = fold * trial.samples, trial.every / fold
-        runs = run_many(lines, samples, every, step=self.step, angles=angles, speeds=trial.speeds)
-        wild = [k for k, run in enumerate(runs) if self.again and isinstance(run, SimulationError)]
-        some, at = [lines[k] for k in wild], [angles[k] for k in wild]
-        for k, run in zip(wild, run_many(some, samples, every, step=0.5 * self.step, angles=at, speeds=trial.speeds), strict=True):
-            runs[k] = run
         self.runs += len(lines)
-        found: list[Values | None] = []
-        for run in runs:
-            if isinstance(run, SimulationError):
-                found.append(None)
-            else:
-                channel = {column: run.values[trial.measured[column].channel] for column in trial.columns}
-                found.append({column: values[(1 if column in late else 0) :: fold].copy() for column, values in channel.items()})
-        return found
+        runs = run_trial(trial, lines, angles, self.step, parts=self.parts, again=self.again)
+        return [None if isinstance(run, SimulationError) else measured_in(trial, run) for run in runs]
 
 
 def chi_square(residuals: FloatArray, mask: Mask) -> float:

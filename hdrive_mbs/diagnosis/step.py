@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -34,19 +33,21 @@ def suitable_step(trials: Sequence[Trial], factors: Sequence[Factor]) -> float:
     hypothesis = Hypothesis(factors=tuple(factors))
     every = float(min(trial.every for trial in trials))
 
-    @cache
-    def run(parts: int) -> tuple[Simulator, FloatArray | None]:
-        simulator = Simulator(trials, every / parts, 8, again=False)
+    def residuals(parts: int, divided: int) -> tuple[Simulator, FloatArray | None]:
+        simulator = Simulator(trials, every / parts, 8, parts=divided, again=False)
         return simulator, simulator.residuals(hypothesis, [np.zeros(hypothesis.size)])[0]
 
     for parts in PARTS:
-        (simulator, residuals), (_, sharper) = run(parts), run(2 * parts)
-        if residuals is None or sharper is None or every / parts > LONGEST:
+        if every / parts > LONGEST:
             continue
-        if max(float(np.sqrt(np.mean((residuals - sharper)[segment.span] ** 2))) for segment in simulator.segments) < ERROR:
+        simulator, whole = residuals(parts, 1)
+        sharper = None if whole is None else residuals(parts, 2)[1]
+        if whole is None or sharper is None:
+            continue
+        if max(float(np.sqrt(np.mean((whole - sharper)[segment.span] ** 2))) for segment in simulator.segments) < ERROR:
             return every / parts
     finest = 2 * PARTS[-1]
-    if run(finest)[1] is None:
+    if residuals(finest, 1)[1] is None:
         raise AnalysisError(
             f"The nominal scene cannot be simulated through the records with steps down to {every / finest:.3g} s; look at its start"
             " values and inputs, or give a shorter step."

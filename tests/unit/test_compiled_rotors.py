@@ -199,18 +199,28 @@ def test_a_matrix_without_springs_has_none(matrix: FloatArray) -> None:
 
 @pytest.mark.parametrize("ratio", [1.0, 3.7e-5, 1.02])
 def test_springs_of_a_multiple_are_those_of_the_matrix(ratio: float) -> None:
-    """Taken from what is kept, also where a matrix that is nearly a multiple came in between."""
-    rng = np.random.default_rng(8)
-    matrix = random_matrix(rng, 4, 2)
-    near = matrix * (1.0 + 1e-9)
-    near[0, 0] = matrix[0, 0] * (1.0 + 1e-7)
-    springs_of(matrix)
-    springs_of(near)
-    found = springs_of(ratio * matrix)
+    matrix = random_matrix(np.random.default_rng(8), 4, 2)
+    found, again = springs_of(ratio * matrix), springs_of(4.0 * ratio * matrix)
     assert found is not None
+    assert again is not None
+    assert all(a.factors is b.factors for a, b in zip(found, again, strict=True))  # found once
     scale = np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))
     made = sum(spring.stiffness * np.outer(spring.factors, spring.factors) for spring in found)
     assert np.max(np.abs(made - ratio * matrix) / scale) < 1e-10 * ratio
+
+
+def test_springs_of_a_matrix_do_not_depend_on_one_that_came_before() -> None:
+    matrix = random_matrix(np.random.default_rng(9), 4, 2)
+    near = matrix + 1e-12 * np.diag(np.diag(matrix))
+    before = springs_of(matrix)
+    springs_of.__globals__["_springs"].cache_clear()
+    springs_of(near)
+    after = springs_of(matrix)
+    assert before is not None
+    assert after is not None
+    for a, b in zip(before, after, strict=True):
+        assert a.stiffness == b.stiffness
+        np.testing.assert_array_equal(a.factors, b.factors)
 
 
 def test_forces_of_all_kinds_of_matrices_are_those_of_the_matrices() -> None:

@@ -77,23 +77,28 @@ def test_of_places_that_explain_the_same_the_report_says_why_one_wins() -> None:
 
 
 @pytest.mark.parametrize(
-    ("chances", "left", "verdict", "said"),
+    ("chances", "left", "verdict", "first", "said"),
     [
-        ((0.905, 0.01), 1.01, "effect", True),
-        ((0.905, 0.01), 27.0, "effect", False),
-        ((0.6, 0.3), 1.01, "effect", False),
-        ((0.01, 0.9), 1.01, "effect", False),
-        ((0.905, 0.01), 1.01, "parameter", False),
+        ((0.905, 0.01), 1.01, "effect", {}, True),
+        ((0.905, 0.01), 27.0, "effect", {}, False),
+        ((0.6, 0.3), 1.01, "effect", {}, False),
+        ((0.01, 0.9), 1.01, "effect", {}, False),
+        ((0.905, 0.01), 1.01, "parameter", {}, False),
+        ((0.905, 0.01), 1.01, "effect", {"share": 0.2}, False),
+        ((0.905, 0.01), 1.01, "effect", {"parameter": "gear stiffness"}, False),
+        ((0.905, 0.01), 1.01, "effect", {"tied": ("load.law",)}, False),
     ],
 )
 def test_a_cause_that_leaves_noise_alone_is_not_refuted_by_the_list_of_places(
-    chances: tuple[float, float], left: float, verdict: str, said: bool
+    chances: tuple[float, float], left: float, verdict: str, first: dict[str, Any], said: bool
 ) -> None:
     """Backlash of an output shaft beside the gear's own lost motion: one signal at the gear stands for nearly all of it."""
     found = SAMPLES["effect"]()
     [cause] = found.causes
-    places = sorted(zip(("gear", f"{cause.at}.law"), chances, strict=True), key=lambda item: -item[1])
-    where = tuple(Place(at=at, probability=chance, gain=9.0, share=0.5) for at, chance in places)
+    assert cause.at == "load"
+    places = sorted(zip(("gear", "load.law"), chances, strict=True), key=lambda item: -item[1])
+    likeliest, other = (Place(at=at, probability=chance, gain=9.0, share=0.9) for at, chance in places)
+    where = (dataclasses.replace(likeliest, **first), other)
     again = dataclasses.replace(found, gaps=diagnosis_samples.gaps(34.2, 28.1, left), where=where, verdict=verdict)
     lines = [text for text in sentences.where_sentences(again) if "leaves noise alone" in text]
     assert [text.startswith(f"What is claimed at {cause.at} leaves") and text.endswith("and at gear it does.") for text in lines] == [

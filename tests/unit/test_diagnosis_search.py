@@ -374,13 +374,13 @@ def test_a_fit_beside_a_leading_one_is_given_up_early_where_it_is_hopeless() -> 
 
 def test_what_a_search_chooses_among_counts_in_the_prior() -> None:
     one = Added(hm.KinematicError(amplitude=1e-5, order=2.0), "gear", "error")
-    assert one.choices == 8  # four orders of either flange
+    assert one.choices == 10  # five orders of either flange
     assert Added(hm.ViscousDrag(coefficient=0.1), "load", "drag").choices == 1
     assert Added(hm.LuGreFriction(coulomb=0.1, stiffness=30.0), "load", "drag").choices == 1  # its starts are searched on
     free = Hypothesis((), (one,))
     z = free.start()
     assert free.log_prior(z) == pytest.approx(
-        sum(unknown.log_prior(z[part].tolist()) for unknown, part in zip(free.unknowns, free.slices, strict=True)) - math.log(8.0)
+        sum(unknown.log_prior(z[part].tolist()) for unknown, part in zip(free.unknowns, free.slices, strict=True)) - math.log(10.0)
     )
 
 
@@ -581,6 +581,7 @@ def test_the_first_of_two_causes_is_looked_for_again_beside_the_second_where_bot
     second = found(3.6, 8500.0, "motor")
     pairs = {"load": found(leaves, above, "load", "motor"), "motor": found(1.0, 4000.0, "motor", "wave_generator")}
     asked: list[str] = []
+    ends: list[tuple[Found, ...]] = []  # pairs of which causes are moved: fitted to the end
 
     def search(team: Team, coarse: Simulator, base: Fitted, *more: object, **how: object) -> Search:
         asked.append(base.hypothesis.added[-1].at)
@@ -590,16 +591,18 @@ def test_the_first_of_two_causes_is_looked_for_again_beside_the_second_where_bot
         "search": search,
         "joined": lambda *some: [],
         "swapped": lambda *some: [],
-        "moved": lambda *some: [],
+        "moved": lambda team, coarse, some, tried: ends.append(some) or [],
         "alone": lambda *some: [second],
-        "contenders": lambda team, coarse, some, first: tuple(sorted(some, key=lambda item: item.fitted.cost)),
+        "contenders": lambda team, coarse, some, first: tuple(sorted(some, key=lambda item: item.fitted.cost))[:1],
     }.items():
         monkeypatch.setattr(f"hdrive_mbs.diagnosis.gather.{name}", made)
     single = Search(null, (found(2.0, 6000.0, "load"),))
     with Team(1) as team:
-        _, best = gather_._second(team, simulator, null, {}, [], single, (), lambda *said: None)
+        _, best, others = gather_._second(team, simulator, null, {}, [], single, (), lambda *said: None)
     assert asked == (["load", "motor"] if again else ["load"])
-    assert best[0] is pairs["motor" if again else "load"]
+    assert best == (pairs["motor" if again else "load"],)
+    assert ends == [best]
+    assert others[0] is second
 
 
 @pytest.mark.parametrize(("alone_leaves", "kept"), [(1.02, 0), (1.5, 1)])
@@ -626,8 +629,7 @@ def test_a_pair_is_given_up_where_its_second_cause_does_without_the_first(
         "fit_nominal": lambda coarse, factors: null,
         "search": lambda *some, **how: Search(null, (found(3.4, 4400.0, "load"),)),
         "_there": lambda *some: (None, ()),
-        "_second": lambda *some: (None, (pair,)),
-        "alone": lambda *some: [found(alone_leaves, 0.0, "motor")],
+        "_second": lambda *some: (None, (pair,), (found(alone_leaves, 0.0, "motor"),)),
         "scored": lambda item, base: dataclasses.replace(item, log_odds=base.cost - item.fitted.cost),
         "on_all_samples": on_all,
     }.items():

@@ -10,11 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.compiled.idle_coordinates import without_idle
-from hdrive_mbs.compiled.line import CompiledLine, CompiledRun, run_many
+from hdrive_mbs.compiled.line import CompiledLine, CompiledRun
 from hdrive_mbs.diagnosis.following import following
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
+from hdrive_mbs.diagnosis.trial_runs import fold_of, measured_in, run_trial
 from hdrive_mbs.errors import LawError, ParameterError, SimulationError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.moment import Moment
@@ -83,9 +84,9 @@ def motion_of(simulator: Simulator, number: int, hypothesis: Hypothesis, z: Floa
     [run] = _runs(simulator, number, [_line(wide, trial, forces, [channel.name for channel in watched])], [(hypothesis, z)])
     if isinstance(run, SimulationError):
         raise run
-    fold = _fold(trial)
+    fold = fold_of(trial)
     values = {channel.name: run.values[channel.name][::fold].copy() for channel in watched}  # views would keep the whole run
-    return Motion(trial, network, values, _columns(trial, run))
+    return Motion(trial, network, values, measured_in(trial, run))
 
 
 def columns_of(
@@ -103,7 +104,7 @@ def columns_of(
     runs = _runs(simulator, number, [line for line in lines if line is not None], [(hypothesis, points[k]) for k in good])
     found: list[dict[str, FloatArray] | None] = [None] * len(points)
     for k, run in zip(good, runs, strict=True):
-        found[k] = None if isinstance(run, SimulationError) else _columns(trial, run)
+        found[k] = None if isinstance(run, SimulationError) else measured_in(trial, run)
     return found
 
 
@@ -123,16 +124,5 @@ def _runs(
     simulator: Simulator, number: int, lines: Sequence[CompiledLine], points: Sequence[tuple[Hypothesis, FloatArray]]
 ) -> list[CompiledRun | SimulationError]:
     trial = simulator.trials[number]
-    fold = _fold(trial)
     angles = [simulator.start_of(number, *point) if trial.settled else dict(trial.angles) for point in points]
-    return run_many(lines, fold * trial.samples, trial.every / fold, step=simulator.step, angles=angles, speeds=trial.speeds)
-
-
-def _fold(trial: Trial) -> int:
-    """Runs are sampled twice as often where a column is compared half a sample later."""
-    return 2 if any(item.late for item in trial.measured.values()) else 1
-
-
-def _columns(trial: Trial, run: CompiledRun) -> dict[str, FloatArray]:
-    fold = _fold(trial)
-    return {c: run.values[item.channel][1 if item.late else 0 :: fold].copy() for c, item in trial.measured.items()}
+    return run_trial(trial, lines, angles, simulator.step)
