@@ -124,9 +124,10 @@ def gap_sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
         return ("No stretch was held out, so the gap was not measured.",)
     gap = diagnosis.gap
     claimed = bool(diagnosis.causes)
+    cause, closes = ("the causes", "close") if len(diagnosis.causes) > 1 else ("the cause", "closes")
     steps = [f"the nominal model is off by {_size(gap.nominal.value)}", f"with refitted parameters by {_size(gap.refit.value)}"]
     if claimed:
-        steps.append(f"with the cause by {_size(gap.effect.value)}")
+        steps.append(f"with {cause} by {_size(gap.effect.value)}")
     noise = f"noise alone gives {digits(gap.floor, 3)}"
     first = f"On stretches that no fit saw, in standard deviations of the noise (rms): {listed(steps)}; {noise}."
     if math.isfinite(gap.nominal.value) and gap.nominal.value <= gap.floor:
@@ -135,7 +136,7 @@ def gap_sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
     if math.isfinite(diagnosis.closed_by_refit):
         parts.append(f"refitting alone closes {percent(diagnosis.closed_by_refit)}")
     if claimed and math.isfinite(diagnosis.closed):
-        parts.append(f"the cause closes {percent(diagnosis.closed)}")
+        parts.append(f"{cause} {closes} {percent(diagnosis.closed)}")
     return (first, f"Of the gap's energy above the noise {listed(parts)}.") if parts else (first,)
 
 

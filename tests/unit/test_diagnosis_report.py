@@ -123,6 +123,13 @@ def test_report_begins_with_the_verdict_in_words(sample: str, first: str) -> Non
     assert lines[3] == first
 
 
+@pytest.mark.parametrize(("sample", "said"), [("effect", "the cause closes"), ("two", "the causes close")])
+def test_the_gap_is_told_with_one_cause_or_with_several(sample: str, said: str) -> None:
+    text = " ".join(sentences.gap_sentences(SAMPLES[sample]()))
+    assert f" {said} " in text
+    assert f"with {said.rpartition(' ')[0]} by" in text
+
+
 def test_two_causes_with_one_probability_are_not_read_as_a_sum() -> None:
     answer = SAMPLES["two"]()
     shared = dataclasses.replace(answer, causes=tuple(dataclasses.replace(cause, probability=0.79) for cause in answer.causes))
