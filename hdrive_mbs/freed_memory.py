@@ -8,8 +8,8 @@ import ctypes
 def give_back() -> None:
     """Hand back what the C library keeps of freed memory for later, where it can be told to (glibc); elsewhere nothing happens.
 
-    glibc keeps arrays of up to 32 MB that were freed below one that is still in use: after a localisation on a rotor line more than
-    half of the memory of the process.
+    glibc keeps arrays of up to 32 MB that were freed below one that is still in use: after a localisation on a rotor line many of
+    its arrays.
     """
     try:
         trim = ctypes.CDLL(None).malloc_trim

@@ -15,7 +15,7 @@ from hdrive_mbs.diagnosis.noise import Whitener
 from hdrive_mbs.diagnosis.resting import repeated
 from hdrive_mbs.diagnosis.robust import Blocks
 from hdrive_mbs.diagnosis.trial import Trial
-from hdrive_mbs.diagnosis.trial_runs import measured_in, run_trial
+from hdrive_mbs.diagnosis.trial_runs import LARGEST, measured_in, run_trial
 from hdrive_mbs.errors import ParameterError, SimulationError
 
 FloatArray = npt.NDArray[np.float64]
@@ -28,8 +28,6 @@ KEPT = 16
 """Runs of each trial that are kept: an effect of sensors or of the drive leaves some trials as they are."""
 AT_ONCE = 16
 """Points that are run at once: more take memory for their whole courses, of which residuals keep a part."""
-LARGEST = 1e7
-"""A whitened residual beyond it counts as this: such a run is far from the record."""
 
 
 @dataclass(frozen=True, eq=False)

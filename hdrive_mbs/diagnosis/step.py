@@ -26,7 +26,8 @@ LONGEST = 2.5 / FASTEST_RATE
 
 
 def suitable_step(trials: Sequence[Trial], factors: Sequence[Factor]) -> float:
-    """Longest step [s] up to LONGEST, a whole part of the sample time, whose nominal runs differ little from those with half of it.
+    """Longest step [s] up to LONGEST, a whole part of the sample time, whose nominal runs differ little from those with half of it;
+    1/128 of a sample where none of them does.
 
     Raises AnalysisError where no step down to 1/128 of a sample gives a finite run.
     """

@@ -15,7 +15,8 @@ from hdrive_mbs.errors import SimulationError
 FloatArray = npt.NDArray[np.float64]
 
 LARGEST = 1e7
-"""Standard deviations of its noise beyond ten times what was measured from which on a column has grown of itself."""
+"""Standard deviations of its noise that a column may be off: a run beyond it is far from the record, and beyond ten times what was
+measured besides it has grown of itself."""
 
 
 def run_trial(
