@@ -124,14 +124,13 @@ def tried(files: Sequence[Path], only: Sequence[str] = ()) -> list[type[Effect]]
 
 def write_answer(result: Diagnosis, folder: Path) -> None:
     """Text, JSON, improved scene, summary picture and page into a folder; the answer itself first."""
-    from hdrive_mbs.diagnosis.improved_words import improved_words
     from hdrive_mbs.diagnosis.report_json import write_report_json
     from hdrive_mbs.diagnosis.report_text import write_report
 
     write_report_json(result, folder / "diagnosis.json")
     write_report(result, folder / "diagnosis.txt")
     try:
-        save_scene(result.improved, folder / "improved.toml", head=improved_words(result))
+        write_improved(result, folder)
     except FileFormatError as error:
         print(f"The improved scene was not written: {error}", file=sys.stderr)
     from hdrive_mbs.plots import plot, save_figure
@@ -139,6 +138,18 @@ def write_answer(result: Diagnosis, folder: Path) -> None:
 
     save_figure(plot(result), folder / "diagnosis")
     write_report_html(result, folder / "diagnosis.html")
+
+
+def write_improved(result: Diagnosis, folder: Path) -> None:
+    """The improved scene, and in a folder beside it the same with the inputs of each record.
+
+    Raises FileFormatError where the scene holds Python functions.
+    """
+    from hdrive_mbs.diagnosis.improved_words import FOLDER, driven_words, file_names, improved_words
+
+    save_scene(result.improved, folder / "improved.toml", head=improved_words(result))
+    for item, name in zip(result.driven, file_names(result.driven), strict=True):
+        save_scene(item.scene, folder / FOLDER / name, head=driven_words(result, item, name))
 
 
 def measured_in(paths: Sequence[Path], reading: Mapping[str, Any]) -> Records:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -14,7 +14,8 @@ from hdrive_mbs.cli.output import print_tables, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.engine import solvers
 from hdrive_mbs.engine.solvers import Solver
-from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.errors import FileFormatError, ParameterError
+from hdrive_mbs.units import to_si
 
 
 def run(
@@ -24,6 +25,10 @@ def run(
     effects: EffectFiles = None,
     duration: Annotated[float, typer.Option(help="Simulated time [s].")] = 1.0,
     initial_speed: Annotated[float, typer.Option(help="Motor speed at t = 0 [rad/s].")] = 0.0,
+    initial: Annotated[
+        list[str] | None,
+        typer.Option(metavar="CHANNEL=VALUE", help="Value at t = 0 (several times), e.g. load.angle=0.1 or 'load.speed=3 rpm'."),
+    ] = None,
     solver: Annotated[str, typer.Option(help="automatic, dormand-prince, runge-kutta-4, trapezoidal or generalized-alpha.")] = "automatic",
     tolerance: Annotated[float, typer.Option(help="Relative tolerance of dormand-prince.")] = 1e-8,
     step: Annotated[float, typer.Option(help="Step of the other solvers [s].")] = 1e-4,
@@ -40,7 +45,9 @@ def run(
 
     chosen = open_scene(scene, set_ or (), effect or (), effects or ())
     taken = _solver(solver, tolerance, step, chosen.network().is_lateral)
-    response = simulate(chosen, duration, solver=taken, initial_speed=initial_speed, estimate_error=estimate_error)
+    response = simulate(
+        chosen, duration, solver=taken, initial_speed=initial_speed, initial=_initial(initial or ()), estimate_error=estimate_error
+    )
     folder = out or Path("results") / re.sub(r"\W+", "_", chosen.name)
     result = response.save(folder / "response.npz")
     pictures = save_figure(draw(response, channels=plot or None), folder / "response")
@@ -70,6 +77,23 @@ def run(
         print(f"{response.steps} steps, {response.seconds:.3f} s CPU. Result: {result}. Picture: {pictures[0]}.")
     if not response.status.startswith("complete"):
         raise typer.Exit(130)
+
+
+def _initial(texts: Sequence[str]) -> dict[str, float]:
+    """``load.angle=0.1`` or ``load.speed=3 rpm`` -> SI values by channel; a bare number is SI."""
+    found = {}
+    for text in texts:
+        name, sign, value = (part.strip() for part in text.partition("="))
+        if not sign or not name:
+            raise FileFormatError(f"--initial {text!r}: write CHANNEL=VALUE, like load.angle=0.1.")
+        try:
+            found[name] = float(value)
+        except ValueError:
+            unit = {"angle": "rad", "speed": "rad/s"}.get(name.rpartition(".")[2])
+            if unit is None:
+                raise FileFormatError(f"--initial {text!r}: {value!r} is no number (in SI units).") from None
+            found[name] = to_si(value, unit, name)
+    return found
 
 
 def _solver(name: str, tolerance: float, step: float, is_rotor_line: bool) -> Solver | None:

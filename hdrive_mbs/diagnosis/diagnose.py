@@ -17,6 +17,7 @@ from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.diagnosis.candidate_checks import check_candidates, left_out
 from hdrive_mbs.diagnosis.candidates import candidates as all_candidates
 from hdrive_mbs.diagnosis.domain import domain_map
+from hdrive_mbs.diagnosis.driven import driven_scenes
 from hdrive_mbs.diagnosis.estimates import effect_estimates, nominal_estimates
 from hdrive_mbs.diagnosis.experiment.choose import next_records
 from hdrive_mbs.diagnosis.fit import Fitted
@@ -162,6 +163,7 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
         gaps=gaps(evidence.fine, evidence.nominal.residuals, evidence.null.residuals, best.residuals),
         parameters=nominal_estimates(best, bench.scene),
         notes=tuple(notes),
+        driven=driven_scenes(evidence.fine, best, [record.name for record in records]),
         seconds=time.monotonic() - started,
         versions=_versions(),
         **extras,  # type: ignore[arg-type]

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
+import re
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import hdrive_mbs
 from hdrive_mbs.diagnosis.readable import listed
-from hdrive_mbs.diagnosis.result import Diagnosis
+from hdrive_mbs.diagnosis.result import Diagnosis, Driven
+
+FOLDER = "improved"
+"""Folder beside improved.toml with a scene for each record."""
 
 
 def improved_words(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -17,14 +23,39 @@ def improved_words(diagnosis: Diagnosis) -> tuple[str, ...]:
         driven = listed([f"{path} (driven by column {column!r})" for column, path in diagnosis.inputs.items()])
         found.append(
             f"The improved scene holds {driven} as the bench file has {'it' if len(diagnosis.inputs) == 1 else 'them'}, not as in a record:"
-            " where that is zero, 'hdrive-mbs run improved.toml' gives zeros. Put a course in, or take that of a record in Python:"
-            " improved.replacing({path: bench.inputs[column].law(times, values)})."
+            " where that is zero, 'hdrive-mbs run improved.toml' gives zeros."
+        )
+    if diagnosis.driven:
+        scenes = listed([f"{FOLDER}/{name}" for name in file_names(diagnosis.driven)])
+        found.append(
+            f"The improved scene with the inputs of a record: {scenes}; the command that runs it stands at the head of the file."
+            " In Python: diagnosis.driven."
         )
     files = own_files(diagnosis)
     if files:
         options = " ".join(f"--effects {file}" for file in files)
         found.append(f"The improved scene has effects of your own: hdrive-mbs run improved.toml {options}")
     return tuple(found)
+
+
+def file_names(driven: Sequence[Driven]) -> tuple[str, ...]:
+    """Names of the scene files of records, no two alike."""
+    found: list[str] = []
+    for item in driven:
+        stem = re.sub(r"\W+", "_", item.record).strip("_") or "record"
+        names = itertools.chain([stem], (f"{stem}_{k}" for k in itertools.count(2)))
+        found.append(next(name for name in names if name.casefold() not in {other.casefold() for other in found}))
+    return tuple(f"{name}.toml" for name in found)
+
+
+def driven_words(diagnosis: Diagnosis, item: Driven, file: str) -> tuple[str, ...]:
+    """Head of the scene file of a record: how it is run."""
+    starts = "".join(f" --initial {name}={value!r}" for name, value in item.initial.items())
+    effects = "".join(f" --effects {name}" for name in own_files(diagnosis))
+    return (
+        f"The improved scene with the inputs of record {item.record!r}.",
+        f"hdrive-mbs run {FOLDER}/{file} --duration {item.duration!r}{starts}{effects}",
+    )
 
 
 def own_files(diagnosis: Diagnosis) -> tuple[str, ...]:

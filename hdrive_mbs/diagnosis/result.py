@@ -230,6 +230,19 @@ class Separation:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class Driven:
+    """The improved scene as one record drives it: ``hm.simulate(item.scene, item.duration, initial=item.initial)``.
+
+    duration : of the record [s];  initial : values at its start by channel, SI, zeros left out
+    """
+
+    record: str
+    scene: Scene
+    duration: float
+    initial: Mapping[str, float]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Diagnosis:
     """The answer.
 
@@ -238,6 +251,7 @@ class Diagnosis:
     ranking : everything that was fitted, most probable first, "none" included
     where : places by latent-force localisation;  gaps : all together first, then by record and column
     parameters : nominal parameters after the fit;  improved : the scene with the cause, its inputs as in the bench
+    driven : the improved scene with the inputs of each record
     next_records : for a group that cannot be told apart, records that would separate it, best first
     warnings : what a reader has to know before he believes the verdict (a column that was not compared, a scene that nothing drives)
     notes : what else he has to know (fits that did not converge, verification on the engine, ...)
@@ -261,6 +275,7 @@ class Diagnosis:
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     inputs: Mapping[str, str] = field(default_factory=dict)
+    driven: tuple[Driven, ...] = ()
     seconds: float = 0.0
     versions: Mapping[str, str] = field(default_factory=dict)
     forces: tuple[LatentForce, ...] = ()

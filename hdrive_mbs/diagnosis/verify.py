@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hdrive_mbs.analysis.time_response import simulate
+from hdrive_mbs.diagnosis.driven import start_of
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.engine.solvers import Trapezoidal
@@ -28,10 +29,10 @@ def engine_difference(simulator: Simulator, fitted: Fitted) -> float:
     scene = fitted.hypothesis.scene(trial.scene, fitted.z)
     own = simulator.columns(fitted.hypothesis, fitted.z)[number]
     samples = min(trial.samples, int(LONGEST / trial.every))
-    start = simulator.start_of(number, fitted.hypothesis, fitted.z)
+    start = start_of(simulator, number, fitted)
     duration = (samples - 1) * trial.every
     solver = Trapezoidal(step=simulator.step / FINER, newton_tolerance=NEWTON) if scene.network().is_lateral else None
-    response = simulate(scene, duration, sample_step=trial.every, initial=dict(start) or None, solver=solver)
+    response = simulate(scene, duration, sample_step=trial.every, initial=start or None, solver=solver)
     worst = 0.0
     for column, measured in trial.measured.items():
         if measured.late or column not in own:
