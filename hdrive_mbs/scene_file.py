@@ -206,7 +206,7 @@ def _build(entry: Any, where: str, bases: tuple[type[Described], ...], known: Ma
     if kind is None:
         raise PlaceError(
             f"No type {str(name)!r}. {where}: {_choice(str(name), sorted(kinds))}. For a class of your own import its module "
-            "first, or use load_scene(path, types=[...]); on the command line give the file of an effect with --effects FILE.py."
+            "first, or use load_scene(path, types=[...]); on the command line give its file with --effects FILE.py."
         )
     fields = {field.name: field for field in dataclasses.fields(kind)}
     values: dict[str, Any] = {}

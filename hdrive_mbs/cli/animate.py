@@ -7,8 +7,9 @@ from typing import Annotated
 
 import typer
 
-from hdrive_mbs.cli.options import JsonFile
+from hdrive_mbs.cli.options import EffectFiles, JsonFile
 from hdrive_mbs.cli.output import write_json
+from hdrive_mbs.cli.python_file import own_types
 
 
 def animate(
@@ -22,6 +23,7 @@ def animate(
     seconds: Annotated[float, typer.Option(help="How long the animation takes [s].")] = 10.0,
     magnification: Annotated[float | None, typer.Option(help="Of displacements; one that can be seen if not given.")] = None,
     dpi: Annotated[float, typer.Option(help="Points per inch; 100 gives about 1000 points across.")] = 100.0,
+    effects: EffectFiles = None,
     json: JsonFile = None,
 ) -> None:
     """Draw a saved run in motion, without a display: the rotor line, or the teeth of its gear beside speed and torque."""
@@ -30,6 +32,8 @@ def animate(
     from hdrive_mbs.errors import AnalysisError
     from hdrive_mbs.plots import animate as draw
 
+    for file in effects or ():
+        own_types(file)  # the scene of the run names their classes
     run = load(result)
     if not isinstance(run, Response):
         raise AnalysisError(f"{result} holds a {type(run).__name__}; only a Response or a RunUp can be animated.")

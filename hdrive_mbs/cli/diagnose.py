@@ -149,7 +149,7 @@ def write_improved(result: Diagnosis, folder: Path) -> None:
 
     save_scene(result.improved, folder / "improved.toml", head=improved_words(result))
     for item, name in zip(result.driven, file_names(result.driven), strict=True):
-        save_scene(item.scene, folder / FOLDER / name, head=driven_words(result, item, name))
+        save_scene(item.scene, folder / FOLDER / name, head=driven_words(item, name))
 
 
 def measured_in(paths: Sequence[Path], reading: Mapping[str, Any]) -> Records:

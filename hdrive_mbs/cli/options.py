@@ -18,7 +18,7 @@ Effects = Annotated[
 ]
 EffectFiles = Annotated[
     list[Path] | None,
-    typer.Option("--effects", metavar="FILE.py", help="A file of your own whose Effect classes the scene file or --effect names."),
+    typer.Option("--effects", metavar="FILE.py", help="A file of your own with effects, laws or parts that the scene or --effect names."),
 ]
 JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write figures as JSON ('-' for stdout).")]
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for results and pictures.")]

@@ -11,7 +11,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from hdrive_mbs.cli.python_file import own_effects
+from hdrive_mbs.cli.python_file import own_types
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import FileFormatError, ParameterError, SceneError, unknown_place
 from hdrive_mbs.quantity import Quantity
@@ -26,9 +26,9 @@ def open_scene(path: Path, settings: Sequence[str] = (), effects: Sequence[str] 
     settings : ``PATH=VALUE``; a name without a dot that is an argument of build() is passed to it; values of
         effects are set too, those of ``effects`` among them
     effects : ``TYPE@PLACE:field=value,field=value``
-    own : .py files with effect classes that these or the scene file name
+    own : .py files with classes that these or the scene file name
     """
-    kinds = [kind for file in own for kind in own_effects(file)]
+    kinds = [kind for file in own for kind in own_types(file)]
     if path.suffix == ".py":
         scene, rest = _build(path, settings)
     else:

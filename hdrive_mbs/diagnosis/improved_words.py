@@ -1,16 +1,18 @@
-"""What is to be known of the improved scene before it is run: whose inputs it holds, and which files its effects are from."""
+"""What is to be known of the improved scene before it is run: whose inputs it holds, and which files its classes are from."""
 
 from __future__ import annotations
 
 import itertools
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 import hdrive_mbs
 from hdrive_mbs.diagnosis.readable import listed
 from hdrive_mbs.diagnosis.result import Diagnosis, Driven
+from hdrive_mbs.quantities import Described
+from hdrive_mbs.scene import Scene
 
 FOLDER = "improved"
 """Folder beside improved.toml with a scene for each record."""
@@ -31,10 +33,10 @@ def improved_words(diagnosis: Diagnosis) -> tuple[str, ...]:
             f"The improved scene with the inputs of a record: {scenes}; the command that runs it stands at the head of the file."
             " In Python: diagnosis.driven."
         )
-    files = own_files(diagnosis)
+    files = own_files(diagnosis.improved)
     if files:
         options = " ".join(f"--effects {file}" for file in files)
-        found.append(f"The improved scene has effects of your own: hdrive-mbs run improved.toml {options}")
+        found.append(f"The improved scene has classes of your own: hdrive-mbs run improved.toml {options}")
     return tuple(found)
 
 
@@ -48,18 +50,28 @@ def file_names(driven: Sequence[Driven]) -> tuple[str, ...]:
     return tuple(f"{name}.toml" for name in found)
 
 
-def driven_words(diagnosis: Diagnosis, item: Driven, file: str) -> tuple[str, ...]:
+def driven_words(item: Driven, file: str) -> tuple[str, ...]:
     """Head of the scene file of a record: how it is run."""
     starts = "".join(f" --initial {name}={value!r}" for name, value in item.initial.items())
-    effects = "".join(f" --effects {name}" for name in own_files(diagnosis))
+    effects = "".join(f" --effects {name}" for name in own_files(item.scene))
     return (
         f"The improved scene with the inputs of record {item.record!r}.",
         f"hdrive-mbs run {FOLDER}/{file} --duration {item.duration!r}{starts}{effects}",
     )
 
 
-def own_files(diagnosis: Diagnosis) -> tuple[str, ...]:
-    """Names of the files that define effects of the improved scene and are not of the library."""
-    modules = [type(item.effect).__module__ for item in diagnosis.improved.effects]
+def own_files(scene: Scene) -> tuple[str, ...]:
+    """Names of the files that define effects, laws or parts of the scene and are not of the library."""
+    modules = [type(item).__module__ for item in _all_of((*scene.parts.values(), *(placed.effect for placed in scene.effects)))]
     own = [name for name in dict.fromkeys(modules) if name.partition(".")[0] != hdrive_mbs.__name__]
     return tuple(Path(getattr(sys.modules.get(name), "__file__", None) or f"{name}.py").name for name in own)
+
+
+def _all_of(items: Iterable[object]) -> Iterator[Described]:
+    """The described objects among these, and those in them."""
+    for item in items:
+        if isinstance(item, Described):
+            yield item
+            yield from _all_of(value for _, value, _ in item.fields())
+        elif isinstance(item, tuple):
+            yield from _all_of(item)

@@ -48,7 +48,10 @@ def animate_response(
     check_request(path, frames, seconds, dpi)
     scene = result.scene
     if scene is None:
-        raise AnalysisError("The run came from a file that could not hold its scene, so its parts cannot be drawn; simulate it again.")
+        raise AnalysisError(
+            "The scene of this run cannot be made from its file, so its parts cannot be drawn. Where the scene has classes of your own,"
+            " import their module before the file is loaded (--effects FILE.py on the command line); otherwise simulate it again."
+        )
     chosen = view or ("line" if scene.network().is_lateral else "drive")
     if chosen not in VIEWS:
         raise ParameterError(f"view = {view!r}: must be one of {', '.join(VIEWS)}.")

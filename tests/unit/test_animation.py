@@ -7,6 +7,7 @@ import itertools
 import re
 import shutil
 import stat
+import subprocess
 import sys
 import threading
 from pathlib import Path
@@ -144,6 +145,44 @@ def test_the_command_animates_a_saved_run(run: hm.Response, tmp_path: Path) -> N
     with Image.open(out) as picture:
         assert picture.n_frames == 3  # type: ignore[attr-defined]
     assert "3 frames" in done.output
+
+
+OWN = """
+from dataclasses import dataclass
+
+import hdrive_mbs as hm
+
+
+@dataclass(frozen=True, kw_only=True)
+class GreaseOfAnimationTest(hm.TorqueEffect):
+    scale: float = hm.parameter("N m", "drag at high speed", low=0.0)
+
+    def torque(self, time, angle, speed):
+        return -self.scale * speed / (1.0 + abs(speed))
+"""
+
+
+def test_a_run_with_an_effect_of_ones_own_is_animated_with_its_file(tmp_path: Path) -> None:
+    """Each command in a process of its own, which does not know the class."""
+    own, model, out = tmp_path / "grease.py", Path(two_rotor_line.__file__), tmp_path / "line.gif"
+    own.write_text(OWN, encoding="utf-8")
+
+    def command(*words: str) -> subprocess.CompletedProcess[str]:
+        script = "from hdrive_mbs.cli.main import main; main()"
+        return subprocess.run([sys.executable, "-c", script, *words], capture_output=True, text=True, check=False, timeout=300)
+
+    options = ("--effects", str(own), "--effect", "GreaseOfAnimationTest@drive:scale=0.05", "--duration", "0.02")
+    assert command("run", str(model), *options, "--out", str(tmp_path)).returncode == 0
+    # the model's motor has a law of its own too
+    words = ("animate", str(tmp_path / "response.npz"), "--out", str(out), "--frames", "2", "--dpi", "40", "--effects", str(model))
+    without = command(*words)
+    assert without.returncode == 2
+    assert "--effects FILE.py" in without.stderr
+    assert not out.exists()
+    done = command(*words, "--effects", str(own))
+    assert done.returncode == 0, done.stderr
+    with Image.open(out) as picture:
+        assert picture.n_frames == 2  # type: ignore[attr-defined]
 
 
 # -- what the frames show -----------------------------------------------------------------------------------

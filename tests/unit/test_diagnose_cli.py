@@ -21,7 +21,7 @@ from typer.testing import CliRunner
 
 import hdrive_mbs as hm
 from hdrive_mbs.cli.main import app, main
-from hdrive_mbs.cli.python_file import own_effects
+from hdrive_mbs.cli.python_file import own_effects, own_types
 from hdrive_mbs.cli.stages import plain_lines, stage_bars
 from hdrive_mbs.diagnosis import diagnose as search
 from hdrive_mbs.diagnosis.bench import Bench
@@ -249,6 +249,16 @@ def test_an_effect_file_that_cannot_be_used_is_named_with_its_line(text: str, wo
         own_effects(Path(file))
     assert str(error.value).startswith(file)
     assert words in str(error.value)
+
+
+def test_a_file_with_a_law_of_ones_own_serves_a_scene_but_not_a_search(path: list[str], tmp_path: Path) -> None:
+    law = "from hdrive_mbs import MotorCharacteristic\n\n\nclass Idle(MotorCharacteristic):\n    def torque(self, time, speed):\n        return 0.0\n"
+    file = Path(written(tmp_path, law, "law"))
+    assert [kind.__name__ for kind in own_types(file)] == ["Idle"]
+    with pytest.raises(FileFormatError, match="defines no effect"):
+        own_effects(file)
+    with pytest.raises(FileFormatError, match="no effect, law or part"):
+        own_types(Path(written(tmp_path, "x = 1\n", "nothing")))
 
 
 def test_an_effect_file_must_not_have_the_name_of_another_module(path: list[str], tmp_path: Path) -> None:

@@ -16,12 +16,13 @@ from hdrive_mbs.cli.main import app
 from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.driven import channels_at_start, driven_scenes
 from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.improved_words import file_names, improved_words
+from hdrive_mbs.diagnosis.improved_words import file_names, improved_words, own_files
 from hdrive_mbs.diagnosis.result import Driven
 from hdrive_mbs.diagnosis.search import fit_nominal
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.verify import engine_difference
 from hdrive_mbs.scene_file import load_scene
+from models import two_rotor_line
 from tests.unit.diagnosis_cases import DURATION, INPUTS, bench, quiet
 from tests.unit.diagnosis_samples import SAMPLES
 
@@ -111,6 +112,14 @@ def test_the_command_at_the_head_of_a_records_scene_runs_it(tmp_path: Path, monk
     assert run.at("motor.speed", np.zeros(1))[0] == 40.0
     own = simulator.columns(fitted.hypothesis, fitted.z)[0]["load_angle"]
     assert abs(run.at("load_encoder", np.array([run.times[-1]]))[0] - own[-1]) < 1e-6
+
+
+def test_the_files_of_all_own_classes_of_a_scene_are_named() -> None:
+    scene = two_rotor_line.build()
+    answer = dataclasses.replace(SAMPLES["without_pictures"](), improved=scene)
+    assert own_files(scene) == ("two_rotor_line.py",)
+    assert own_files(bench().scene) == ()
+    assert "hdrive-mbs run improved.toml --effects two_rotor_line.py" in " ".join(improved_words(answer))
 
 
 @pytest.mark.parametrize(

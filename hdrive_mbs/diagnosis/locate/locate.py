@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -207,19 +207,14 @@ class Localiser:
         """
         found: dict[str, tuple[float, str]] = {}
         many = math.log(max(self._hypothesis.nominal_size, 1))
+        known = {source.at for item in self._about.responses for source in item.sources.values()}
         for k, unknown in enumerate(self._hypothesis.unknowns[: self._hypothesis.nominal_size]):
             assert isinstance(unknown, Factor)
             if unknown.wide == 1.0:
                 gain = self._about.likelihood.loosened(self._nowhere, k, LOOSE) - many
-                for owner in {self._owner(path) for path in unknown.nominal}:
+                for owner in {_owner(path, known) for path in unknown.nominal}:
                     found[owner] = max((gain, unknown.name), found.get(owner, (-math.inf, "")))
         return found
-
-    def _owner(self, path: str) -> str:
-        """The place that a parameter belongs to: the part of its path that is one, or the part of the scene."""
-        known = {item.sources[name].at for item in self._about.responses for name in item.sources}
-        parts = path.split(".")
-        return next((at for k in range(len(parts), 0, -1) if (at := ".".join(parts[:k])) in known), parts[0])
 
     @cached_property
     def _odds(self) -> dict[str, float]:
@@ -355,6 +350,12 @@ def _one_a_place(tried: Sequence[_Tried]) -> list[_Tried]:
     for item in sorted(tried, key=lambda item: -item.gain):
         found.setdefault(item.at, item)
     return list(found.values())
+
+
+def _owner(path: str, places: Collection[str]) -> str:
+    """The place that a parameter belongs to: the part of its path that is one, or the part of the scene."""
+    parts = path.split(".")
+    return next((at for k in range(len(parts), 0, -1) if (at := ".".join(parts[:k])) in places), parts[0])
 
 
 def _blocks(values: FloatArray) -> FloatArray:
