@@ -252,7 +252,8 @@ def test_an_effect_file_that_cannot_be_used_is_named_with_its_line(text: str, wo
 
 
 def test_a_file_with_a_law_of_ones_own_serves_a_scene_but_not_a_search(path: list[str], tmp_path: Path) -> None:
-    law = "from hdrive_mbs import MotorCharacteristic\n\n\nclass Idle(MotorCharacteristic):\n    def torque(self, time, speed):\n        return 0.0\n"
+    head = "from hdrive_mbs import MotorCharacteristic\n\n\nclass Idle(MotorCharacteristic):\n"
+    law = head + "    def torque(self, time, speed):\n        return 0.0\n"
     file = Path(written(tmp_path, law, "law"))
     assert [kind.__name__ for kind in own_types(file)] == ["Idle"]
     with pytest.raises(FileFormatError, match="defines no effect"):
