@@ -11,7 +11,7 @@ import numpy as np
 from hdrive_mbs.diagnosis.all_samples import as_given, on_all_samples
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate
-from hdrive_mbs.diagnosis.choosing import enough
+from hdrive_mbs.diagnosis.choosing import enough, leaves
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.located import Located, bends, localised_about, located
 from hdrive_mbs.diagnosis.pairs import alone, contenders, joined, moved, swapped
@@ -76,7 +76,7 @@ def _there(
     team: Team, coarse: Simulator, fine: Simulator, null: Fitted, single: Search, tried: Sequence[Candidate], said: Report
 ) -> tuple[Located | None, tuple[Found, ...]]:
     """Where the gap of a rotor line lies, if the search left something, and what laws of that place explain of it."""
-    if not bends(fine) or min((left(item.fitted) for item in single.found), default=left(null)) <= enough(null, LEFT):
+    if not bends(fine) or not leaves(min((left(item.fitted) for item in single.found), default=left(null)), null, LEFT):
         return None, ()
     said("looking where the gap lies", 0, 1)
     nominal = as_given(fine, null)

@@ -10,7 +10,7 @@ import numpy as np
 
 from hdrive_mbs.diagnosis.beginnings import begun_at, beside, widths_of
 from hdrive_mbs.diagnosis.candidates import Candidate
-from hdrive_mbs.diagnosis.choosing import beyond, enough, passed_over, picked, spread_out, worth
+from hdrive_mbs.diagnosis.choosing import beyond, enough, leaves, passed_over, picked, spread_out, worth
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.force_orders import StandsOut
 from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, restarts, unfinished
@@ -169,7 +169,7 @@ class _Work:
         ]
         further_ = [further(item.fitted, *((CONVERGED, FINE, 1) if end else (STEPS,))) for item, end in zip(kept, thorough, strict=True)]
         found = cheapest(self.fitted([(item.suspect, task) for item, task in zip(kept, further_, strict=True)], "fitting the best"))
-        if found and found[0].fitted.chi_fit > enough(base, ENOUGH):
+        if found and leaves(found[0].fitted.chi_fit, base, ENOUGH):
             found = cheapest([*found, *self._others(passed_over(found, first, chosen))])
         return found, [(suspect, look.cost) for suspect, look in first]
 
