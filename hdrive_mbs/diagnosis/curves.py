@@ -15,8 +15,8 @@ Pair = tuple[FloatArray, FloatArray]
 
 POINTS = 3000
 """Most points of a loop."""
-HIGHEST, REVOLUTIONS, PIECES = 12.0, 8.0, 40
-"""Highest order of a map, revolutions of each of its pieces, and their number."""
+LOWEST, HIGHEST, REVOLUTIONS, PIECES = 0.25, 12.0, 8.0, 40
+"""Orders of a map, revolutions of each of its pieces, and their number; below the lowest there is drift."""
 
 
 def loop_of(record: str, at: str, refit: Pair, effect: Pair | None, force: FloatArray | None) -> Loop:
@@ -61,7 +61,7 @@ def order_map(
         except (AnalysisError, ParameterError):
             return None
     first = maps[0]
-    shown = first.lines <= HIGHEST
+    shown = (first.lines >= LOWEST) & (first.lines <= HIGHEST)
     other = np.full((len(first.speeds), int(shown.sum())), np.nan) if after is None else maps[1].amplitude[:, shown]
     return OrderMap(
         record=record,

@@ -12,33 +12,32 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.diagnosis.alternatives import fits_of, records_to_take
 from hdrive_mbs.diagnosis.assumed_bench import assumed_bench
 from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.diagnosis.candidate_checks import check_candidates, left_out
 from hdrive_mbs.diagnosis.candidates import candidates as all_candidates
-from hdrive_mbs.diagnosis.domain import domain_map
 from hdrive_mbs.diagnosis.driven import driven_scenes
 from hdrive_mbs.diagnosis.estimates import effect_estimates, nominal_estimates
-from hdrive_mbs.diagnosis.experiment.choose import next_records
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.gap import gaps
 from hdrive_mbs.diagnosis.gather import Evidence, gather
 from hdrive_mbs.diagnosis.input_checks import check_records, check_trials, not_compared, not_driven
 from hdrive_mbs.diagnosis.journal import Journal
-from hdrive_mbs.diagnosis.pictured import pictured
-from hdrive_mbs.diagnosis.result import Cause, Diagnosis, Separation
+from hdrive_mbs.diagnosis.pictures import pictures_of
+from hdrive_mbs.diagnosis.record_words import record_words
+from hdrive_mbs.diagnosis.result import Cause, Diagnosis
 from hdrive_mbs.diagnosis.scale_checks import looks_scaled
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.diagnosis.suspects import Label
 from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.team import Team
-from hdrive_mbs.diagnosis.traces import traces
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import NONE, UNKNOWN, Claim, judge, left
-from hdrive_mbs.diagnosis.verify import engine_difference
+from hdrive_mbs.diagnosis.verify import verified
 from hdrive_mbs.effects.effect import Effect
-from hdrive_mbs.errors import HdriveError, ParameterError
+from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.freed_memory import give_back
 from hdrive_mbs.records.collection import Records
 from hdrive_mbs.records.record import Record
@@ -49,8 +48,6 @@ Report = Callable[[str, int, int], None]
 
 EVERY = 4
 """Samples from one to the next that the search compares; the last fits take all."""
-AGREES = 0.3
-"""Standard deviations of the noise by which search and engine may differ before a note says so."""
 
 
 def diagnose(
@@ -95,7 +92,8 @@ def diagnose(
     step = suitable_step(trials, factors) if step is None else step
     coarse, fine = Simulator(searched, step, EVERY), Simulator(trials, step)
     check_trials(coarse, factors)
-    warnings = (*not_driven(known, chosen, coarse, factors), *not_compared(known, chosen), *looks_scaled(coarse, factors))
+    changed, left = record_words(chosen)
+    warnings = (*changed, *not_driven(known, chosen, coarse, factors), *not_compared(known, chosen), *looks_scaled(coarse, factors))
     check_candidates(tried, coarse, factors)
     journal = None
     if folder is not None:
@@ -106,11 +104,25 @@ def diagnose(
     if watch is not None:
         watch(evidence)
     found = answer(known, chosen, evidence, started=started, pictures=pictures)
-    notes = (*left_out(tried, evidence.single, step), *(() if journal is None else journal.said))
+    notes = (*left_out(tried, evidence.single, step), *team.lost, *(() if journal is None else journal.said), *left)
     driven = {name: item.path for name, item in known.inputs.items()}
+    files = {record.name: {"source": record.source, "sha256": record.sha256} for record in chosen if record.sha256}
+    settings = {
+        "step": step,
+        "every": EVERY,
+        "candidates": [f"{item.kind.__name__}@{item.at}" for item in tried],
+        "searched": sorted({trial.name for trial in searched}),
+    }
     del evidence, coarse, fine, trials, trials_of, searched
     give_back()
-    return dataclasses.replace(found, notes=(*found.notes, *notes), warnings=warnings, inputs=driven)
+    return dataclasses.replace(
+        found,
+        notes=(*found.notes, *notes),
+        warnings=(*found.warnings, *warnings),
+        inputs=driven,
+        files=files,
+        settings=settings,
+    )
 
 
 def _records(records: Records | Sequence[Record] | Record) -> tuple[Record, ...]:
@@ -140,16 +152,13 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
     improved = best.hypothesis.scene(bench.scene, best.z)
     notes: list[str] = []
     claimed = () if claim.kind in ("none", "unknown") or claim.fit is None else _causes(claim.fit, claim, improved, bench.groups)
-    extras: dict[str, object] = {}
     if evidence.place.doubt:
         notes.append(f"Place of the gap: {evidence.place.doubt}")
-    if pictures:
-        extras["traces"] = traces(evidence.fine, evidence.nominal, evidence.null, best)
-        extras["domain"] = domain_map(evidence.fine, evidence.null, best)
-        extras["forces"] = tuple(pictured(force) for force in evidence.place.forces)
+    extras = pictures_of(evidence, best, [cause.at for cause in claimed]) if pictures else {}
     if claim.tied:
-        extras["next_records"] = _next_records(bench, records, evidence, claim, notes)
-    notes += _verified(evidence.fine, best)
+        extras["next_records"] = records_to_take(bench, records, evidence, claim, notes)
+    agreeing, differing = verified(evidence.fine, _winner_and_runner_up(evidence, best))
+    notes += agreeing
     notes += [f"{best.hypothesis.label}: the fit had not converged when it stopped." for _ in range(not best.converged)]
     return Diagnosis(
         scene=bench.scene,
@@ -163,36 +172,19 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
         gaps=gaps(evidence.fine, evidence.nominal.residuals, evidence.null.residuals, best.residuals),
         parameters=nominal_estimates(best, bench.scene),
         notes=tuple(notes),
+        warnings=differing,
+        fits=fits_of(evidence, claim),
         driven=driven_scenes(evidence.fine, best, [record.name for record in records]),
         seconds=time.monotonic() - started,
         versions=_versions(),
-        **extras,  # type: ignore[arg-type]
+        **extras,
     )
 
 
-def _next_records(bench: Bench, records: Sequence[Record], evidence: Evidence, claim: Claim, notes: list[str]) -> tuple[Separation, ...]:
-    """Records that would separate what these cannot tell apart; a note where none can be planned."""
-    tied = _alternatives(evidence, claim)
-    if len(tied) < 2:
-        return ()
-    try:
-        return next_records(bench, tied, records=records, step=evidence.fine.step)
-    except HdriveError as error:
-        notes.append(f"No next record was planned: {error}")
-        return ()
-
-
-def _alternatives(evidence: Evidence, claim: Claim) -> dict[Label, Fitted]:
-    """What is claimed and what cannot be told from it, each by the label that the others lack."""
-    assert claim.fit is not None
-    own = claim.fit.suspect.label
-    if claim.fit not in evidence.pairs:
-        return {item.suspect.label: item.fitted for item in evidence.singles if item.suspect.label in (own, *claim.tied)}
-    found = {own: claim.fit.fitted}
-    for item in evidence.pairs:
-        labels = [added.label for added in item.fitted.hypothesis.added if added.label in claim.tied]
-        found |= dict.fromkeys(labels[:1], item.fitted)
-    return found
+def _winner_and_runner_up(evidence: Evidence, best: Fitted) -> list[Fitted]:
+    """What is answered, and the best of what else was fitted to all samples."""
+    others = [item for item in (*evidence.singles, *evidence.pairs) if item.fitted is not best]
+    return [best, *(item.fitted for item in sorted(others, key=lambda item: -item.log_odds)[:1])]
 
 
 def _causes(found: Found, claim: Claim, improved: Scene, groups: Mapping[str, Sequence[str]]) -> tuple[Cause, ...]:
@@ -275,16 +267,6 @@ def _ranking(evidence: Evidence, claim: Claim) -> tuple[Cause, ...]:
             )
         )
     return tuple(causes)
-
-
-def _verified(simulator: Simulator, fitted: Fitted) -> list[str]:
-    """A note on how far the multibody engine is from the compiled run of the answer."""
-    try:
-        difference = engine_difference(simulator, fitted)
-    except HdriveError as error:
-        return [f"Not verified on the engine: {error}"]
-    agrees = "agree" if difference < AGREES else "DIFFER"
-    return [f"Search and multibody engine {agrees}: rms difference {difference:.2g} of the noise at most, {fitted.hypothesis.label}."]
 
 
 def _versions() -> Mapping[str, str]:

@@ -18,6 +18,7 @@ def pictured(force: LatentForce) -> result.LatentForce:
     nothing = np.empty(0)
     return result.LatentForce(
         at=force.at,
+        way=force.way,
         unit=force.unit,
         record=force.record,
         times=force.times[thin],

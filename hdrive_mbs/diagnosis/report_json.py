@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import json
 import math
 import os
@@ -37,6 +38,8 @@ def report_document(diagnosis: Diagnosis, *, series: bool = False) -> dict[str, 
         "units": "SI; speeds and frequencies in rad/s",
         "scene": diagnosis.scene.name,
         "records": list(diagnosis.records),
+        "files": diagnosis.files,
+        "settings": diagnosis.settings,
         "verdict": diagnosis.verdict,
         "verdict_text": VERDICTS.get(diagnosis.verdict, diagnosis.verdict),
         "summary": sentences.verdict(diagnosis),
@@ -62,6 +65,7 @@ def report_document(diagnosis: Diagnosis, *, series: bool = False) -> dict[str, 
         "warnings": diagnosis.warnings,
         "notes": diagnosis.notes,
         "inputs": diagnosis.inputs,
+        "nominal_scene": _scene(diagnosis.scene),
         "improved_scene": _scene(diagnosis.improved),
         "seconds": diagnosis.seconds,
         "versions": diagnosis.versions,
@@ -70,7 +74,7 @@ def report_document(diagnosis: Diagnosis, *, series: bool = False) -> dict[str, 
         document |= {name: getattr(diagnosis, name) for name in SERIES}
     plain = _plain(document)
     assert isinstance(plain, dict)
-    return plain
+    return {**plain, "sha256": _checksum(plain)}
 
 
 def write_report_json(diagnosis: Diagnosis, path: str | os.PathLike[str], *, series: bool = False) -> Path:
@@ -78,10 +82,12 @@ def write_report_json(diagnosis: Diagnosis, path: str | os.PathLike[str], *, ser
     return write_text(path, json.dumps(report_document(diagnosis, series=series), indent=2, allow_nan=False) + "\n")
 
 
-def read_report_json(path: str | os.PathLike[str]) -> dict[str, Any]:
+def read_report_json(path: str | os.PathLike[str], *, verify: bool = True) -> dict[str, Any]:
     """The data of a written report; null is None.
 
-    Raises FileFormatError for a file that cannot be read, is no such report, or is of a later schema.
+    verify : refuse a file whose checksum is not that of its content
+
+    Raises FileFormatError for a file that cannot be read, is no such report, is of a later schema, or was changed.
     """
     try:
         document = json.loads(Path(path).read_text("utf-8"))
@@ -94,7 +100,18 @@ def read_report_json(path: str | os.PathLike[str]) -> dict[str, Any]:
     version = document.get("schema_version")
     if not isinstance(version, int) or version > VERSION:
         raise FileFormatError(f"{path} has schema_version {version!r}; this package reads up to {VERSION}. Install a later hdrive-mbs.")
+    if verify and "sha256" in document and document["sha256"] != _checksum(document):
+        raise FileFormatError(
+            f"{path}: the checksum does not fit; the file was changed or damaged."
+            " Take another copy, or read it as it is with read_report_json(path, verify=False)."
+        )
     return document
+
+
+def _checksum(document: Mapping[str, Any]) -> str:
+    """Of everything but the checksum itself, whatever the order of the keys."""
+    rest = {key: value for key, value in document.items() if key != "sha256"}
+    return hashlib.sha256(json.dumps(rest, sort_keys=True).encode()).hexdigest()
 
 
 def _in_unit(gap: Any) -> dict[str, Any]:

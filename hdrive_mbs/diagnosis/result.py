@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.scene import Scene
+
+if TYPE_CHECKING:
+    from hdrive_mbs.diagnosis.fit import Fitted
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -252,10 +256,13 @@ class Diagnosis:
     where : places by latent-force localisation;  gaps : all together first, then by record and column
     parameters : nominal parameters after the fit;  improved : the scene with the cause, its inputs as in the bench
     driven : the improved scene with the inputs of each record
+    fits : (effect, place) -> fit, of what is claimed, what cannot be told from it and the best other causes, for ``next_records``
     next_records : for a group that cannot be told apart, records that would separate it, best first
     warnings : what a reader has to know before he believes the verdict (a column that was not compared, a scene that nothing drives)
     notes : what else he has to know (fits that did not converge, verification on the engine, ...)
     inputs : columns that drive the scene, and the field each of them was put into
+    files : record -> its source and sha256, of records that were read from files
+    settings : step [s], every (samples of which a search compares one), candidates (classes and places), searched (records)
     forces, loops, order_maps : for pictures: at the located place, most telling record first
     """
 
@@ -276,6 +283,9 @@ class Diagnosis:
     warnings: tuple[str, ...] = ()
     inputs: Mapping[str, str] = field(default_factory=dict)
     driven: tuple[Driven, ...] = ()
+    fits: Mapping[tuple[str, str], Fitted] = field(default_factory=dict)
+    files: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    settings: Mapping[str, Any] = field(default_factory=dict)
     seconds: float = 0.0
     versions: Mapping[str, str] = field(default_factory=dict)
     forces: tuple[LatentForce, ...] = ()

@@ -32,6 +32,7 @@ class Team:
     with Team(2) as team: answers = team.map(function, shared, items)
 
     workers : processes;  journal : where finished work is kept, if it is to be
+    lost : what became of processes that died; another one takes over their item, once
     """
 
     def __init__(self, workers: int, journal: Journal | None = None) -> None:
@@ -41,6 +42,7 @@ class Team:
         self._running: list[Worker] = []
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._number = 0
+        self.lost: list[str] = []
 
     def __enter__(self) -> Self:
         if self.workers > 1:
@@ -62,7 +64,8 @@ class Team:
     ) -> list[Answer]:
         """function(shared, item) of each item, in order; ``done(number, total)`` is called as they come in.
 
-        Raises AnalysisError where a process dies (out of memory, say), and whatever the function raises.
+        Raises AnalysisError where a process dies twice at the same item (out of memory, say) or cannot start, and whatever the
+        function raises.
         """
         said = done or (lambda number, total: None)
         answers: dict[int, Answer] = {}
@@ -99,7 +102,7 @@ class Team:
         path.write_bytes(packed(shared))
         while len(self._running) < self.workers:
             self._running.append(Worker.begun())
-        waiting = list(items)
+        waiting, begun_again = list(items), set[int]()
         for worker in self._running:
             if worker.ready and waiting:
                 worker.give(waiting[0], path, function, items[waiting.pop(0)])
@@ -109,7 +112,15 @@ class Team:
                 try:
                     good, answer = worker.pipe.recv()
                 except (EOFError, OSError):
-                    raise self._died(worker, items) from None
+                    at, error = worker.at, self._died(worker, items)
+                    if not worker.ready or at in begun_again:
+                        raise error from None
+                    if at is not None:
+                        begun_again.add(at)
+                        waiting.insert(0, at)
+                    self.lost.append(f"{error} Another one took over.")
+                    self._running.append(Worker.begun())
+                    continue
                 if not good:
                     raise answer
                 if not worker.ready:

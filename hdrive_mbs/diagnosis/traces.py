@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.compiled.line import CompiledLine
+from hdrive_mbs.diagnosis.along import along, network_of
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.result import Trace
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
-from hdrive_mbs.errors import HdriveError
 from hdrive_mbs.network.network import Network
 
 FloatArray = npt.NDArray[np.float64]
@@ -27,7 +26,7 @@ def traces(simulator: Simulator, nominal: Fitted, refit: Fitted, effect: Fitted)
         network = trial.scene.network()
         units = {channel.name: channel.unit for channel in network.channels}
         thin = slice(None, None, max(1, -(-trial.samples // POINTS)))
-        where = _operating_point(simulator, trial, effect)
+        where = _operating_point(simulator, number, effect)
         for column, values in trial.columns.items():
             measured = trial.measured[column]
             simulated = [model[number].get(column, np.full(trial.samples, np.nan)) for model in models]
@@ -56,17 +55,12 @@ def _offset(left: FloatArray, trial: Trial) -> float:
     return float(left[used].mean()) if used.any() else 0.0
 
 
-def _operating_point(simulator: Simulator, trial: Trial, fitted: Fitted) -> dict[str, FloatArray]:
+def _operating_point(simulator: Simulator, number: int, fitted: Fitted) -> dict[str, FloatArray]:
     """Speed and angle of the first place that turns, and the torque of the last connection, during a trial."""
-    try:
-        network = fitted.hypothesis.scene(trial.scene, fitted.z).network()
-        wanted = _channels(network)
-        run = CompiledLine(network, list(wanted.values())).run(
-            trial.samples, trial.every, step=simulator.step, angles=trial.angles, speeds=trial.speeds
-        )
-    except HdriveError:
-        return {}
-    return {name: run.values[channel] for name, channel in wanted.items()}
+    network = network_of(simulator, number, fitted)
+    wanted = {} if network is None else _channels(network)
+    values = along(simulator, number, fitted, list(wanted.values()))
+    return {name: values[channel] for name, channel in wanted.items() if channel in values}
 
 
 def _channels(network: Network) -> dict[str, str]:

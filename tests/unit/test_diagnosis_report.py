@@ -301,6 +301,7 @@ def test_json_keeps_every_digit_and_the_scene(tmp_path: Path) -> None:
     assert found["gaps"][1]["in_unit"]["nominal"]["value"] == 1.1e-4 * 34.2
     assert found["parameters"][0]["moved_sigmas"] == pytest.approx(2.4)
     assert scene_from_dict(found["improved_scene"]) == answer.improved
+    assert scene_from_dict(found["nominal_scene"]) == answer.scene
 
 
 def test_json_writes_null_for_what_is_not_a_number() -> None:
@@ -308,6 +309,14 @@ def test_json_writes_null_for_what_is_not_a_number() -> None:
     assert found["causes"][0]["probability"] is None
     assert found["causes"][0]["parameters"][0]["high"] is None
     assert found["gaps"][0]["refit"] == {"value": None, "low": None, "high": None}
+
+
+def test_a_report_that_was_changed_is_refused_and_can_be_read_on_request(tmp_path: Path) -> None:
+    path = write_report_json(SAMPLES["effect"](), tmp_path / "d.json")
+    path.write_text(path.read_text("utf-8").replace('"verdict": "effect"', '"verdict": "none"'), "utf-8")
+    with pytest.raises(FileFormatError, match=r"checksum does not fit.*verify=False"):
+        read_report_json(path)
+    assert read_report_json(path, verify=False)["verdict"] == "none"
 
 
 @pytest.mark.parametrize(

@@ -269,6 +269,13 @@ def die(shared: object, item: int) -> int:
     return item
 
 
+def die_once(marker: Path, item: int) -> int:
+    if item == 1 and not marker.exists():
+        marker.write_text("dead")
+        os.kill(os.getpid(), signal.SIGKILL)
+    return 10 * item
+
+
 def fail(shared: object, item: int) -> int:
     raise hm.ParameterError(f"item {item} is wrong")
 
@@ -286,6 +293,14 @@ def team() -> Iterator[Team]:
 def test_a_worker_that_dies_is_named_with_the_way_out(team: Team) -> None:
     with pytest.raises(hm.AnalysisError, match=r"died \(signal SIGKILL\) at work on int; if memory was short, use fewer workers"):
         team.map(die, None, [0, 1, 2])
+
+
+def test_the_item_of_a_worker_that_dies_once_is_done_by_another_and_said(team: Team, tmp_path: Path) -> None:
+    assert team.map(die_once, tmp_path / "marker", [0, 1, 2, 3]) == [0, 10, 20, 30]
+    [said] = team.lost
+    assert "died (signal SIGKILL) at work on int" in said
+    assert said.endswith("Another one took over.")
+    assert team.map(double, 2, [1, 2, 3]) == [2, 4, 6]
 
 
 def test_an_error_in_a_worker_comes_back_as_it_is_with_its_lines(team: Team) -> None:
