@@ -9,7 +9,7 @@ import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-IN_SOURCE = ("hdrive_mbs/", "models/", "benchmarks/", "tests/")
+IN_SOURCE = ("hdrive_mbs/", "models/", "benchmarks/", "docs/", "tests/")
 ALSO_IN_SOURCE = {"README.md", "CHANGELOG.md", "LICENSE", "pyproject.toml"}
 OFTEN_FORGOTTEN = {
     "hdrive_mbs/py.typed",

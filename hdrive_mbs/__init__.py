@@ -235,6 +235,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "diagnosis.experiment.plan": ("Plan",),
     "diagnosis.experiment.limits": ("Limits",),
     "diagnosis.experiment.choose": ("next_records",),
+    "diagnosis.experiment.optimise": ("optimised_multisine",),
     "diagnosis.report_text": ("write_report",),
     "diagnosis.report_json": ("read_report_json", "write_report_json"),
     "plots.report_html": ("write_report_html",),

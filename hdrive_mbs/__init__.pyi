@@ -88,6 +88,7 @@ from hdrive_mbs.diagnosis.bench import Uncertain as Uncertain
 from hdrive_mbs.diagnosis.diagnose import diagnose as diagnose
 from hdrive_mbs.diagnosis.experiment.choose import next_records as next_records
 from hdrive_mbs.diagnosis.experiment.limits import Limits as Limits
+from hdrive_mbs.diagnosis.experiment.optimise import optimised_multisine as optimised_multisine
 from hdrive_mbs.diagnosis.experiment.plan import Plan as Plan
 from hdrive_mbs.diagnosis.measured import Measured as Measured
 from hdrive_mbs.diagnosis.report_json import read_report_json as read_report_json

@@ -17,7 +17,7 @@ import typer
 from hdrive_mbs.cli.options import JsonFile
 from hdrive_mbs.cli.output import write_json
 from hdrive_mbs.cli.python_file import imported, lines_named, own_effects
-from hdrive_mbs.cli.records_options import BenchFile, Channels, Only, OwnEffects, Repairs, TimeColumn, Units, reading_of
+from hdrive_mbs.cli.records_options import BenchFile, Channels, HeldOut, Only, OwnEffects, Repairs, TimeColumn, Units, reading_of
 from hdrive_mbs.cli.stages import stage_bars
 from hdrive_mbs.errors import FileFormatError, HdriveError, SceneError, unknown_place
 from hdrive_mbs.scene import Scene
@@ -46,6 +46,7 @@ def diagnose(
     unit: Units = None,
     time: TimeColumn = None,
     repair: Repairs = None,
+    held_out: HeldOut = None,
     workers: Annotated[int | None, typer.Option(help="Processes on this machine; 2 where it has two cores.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with an interrupted diagnosis in --out.")] = False,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for report, pictures and the improved scene.")] = None,
@@ -59,12 +60,13 @@ def diagnose(
     measured = measured_in(paths, reading)
     name = chosen.name if isinstance(chosen, Scene) else chosen.scene.name
     folder = out or Path("results") / re.sub(r"\W+", "_", f"diagnosis {name}")
-    work = _begin(folder / WORK, _job(scene, measured, effects or (), only or (), reading), resume)
+    work = _begin(folder / WORK, _job(scene, measured, effects or (), only or (), reading, held_out or ()), resume)
     from hdrive_mbs.diagnosis.diagnose import diagnose as run
 
     try:
         with stage_bars() as report:
-            result = run(chosen, measured, candidates=kinds, workers=workers or min(2, os.cpu_count() or 1), folder=work, report=report)
+            cores = workers or min(2, os.cpu_count() or 1)
+            result = run(chosen, measured, candidates=kinds, workers=cores, folder=work, held_out=held_out or (), report=report)
     except KeyboardInterrupt:
         print(f"interrupted; what is done is kept in {work}. The same command with --resume goes on.", file=sys.stderr)
         raise typer.Exit(130) from None
@@ -167,7 +169,9 @@ def measured_in(paths: Sequence[Path], reading: Mapping[str, Any]) -> Records:
     return Records(records=tuple(record for records in found for record in records))
 
 
-def _job(scene: Path, records: Records, effects: Sequence[Path], only: Sequence[str], reading: Mapping[str, Any]) -> dict[str, Any]:
+def _job(
+    scene: Path, records: Records, effects: Sequence[Path], only: Sequence[str], reading: Mapping[str, Any], held_out: Sequence[str]
+) -> dict[str, Any]:
     """What is diagnosed, so that only the same is gone on with."""
     files = {"scene": scene, **{f"effects {path.name}": path for path in effects}}
     return {
@@ -175,6 +179,7 @@ def _job(scene: Path, records: Records, effects: Sequence[Path], only: Sequence[
         "records": {record.name: record.sha256 for record in records},
         "only": sorted(only),
         "reading": dict(reading),
+        "held_out": sorted(held_out),
     }
 
 

@@ -28,6 +28,10 @@ Units = Annotated[
     list[str] | None, typer.Option("--unit", metavar="COLUMN=UNIT", help="Unit of a column where the file says none (several times).")
 ]
 TimeColumn = Annotated[str | None, typer.Option("--time", metavar="COLUMN", help="Column with the time, or a rate like '5 kHz'.")]
+HeldOut = Annotated[
+    list[str] | None,
+    typer.Option("--held-out", metavar="RECORD", help="A record that no fit sees, for the gap (several times); else a quarter of each."),
+]
 Repairs = Annotated[
     list[str] | None, typer.Option("--repair", metavar="FAULT=HOW", help="Repair records, e.g. gaps=interpolate (several times).")
 ]

@@ -36,6 +36,7 @@ from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import NONE, UNKNOWN, Claim, judge, left
 from hdrive_mbs.diagnosis.verify import verified
+from hdrive_mbs.diagnosis.whole_records import split_up
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.freed_memory import give_back
@@ -58,6 +59,7 @@ def diagnose(
     workers: int | None = None,
     folder: str | Path | None = None,
     step: float | None = None,
+    held_out: Sequence[str] = (),
     report: Report | None = None,
     pictures: bool = True,
     watch: Callable[[Evidence], object] | None = None,
@@ -71,27 +73,28 @@ def diagnose(
     workers : processes; 1 if not given.  With more, a script needs the line ``if __name__ == "__main__":`` before the call
     folder : where fits are kept, so that an interrupted diagnosis goes on from there
     step : of the integration [s], chosen if not given (``suitable_step``); what grows with it is run again with half of it
+    held_out : names of records that no fit may see, on which the gap is then measured; if not given, a quarter of every record, in
+        stretches
     report : called with (stage, done, total)
     pictures : with histories, located forces and maps for the report
     watch : called with all fits, for those who want more figures than the answer holds
 
-    Raises RecordError for records that do not fit the bench, ParameterError for a bad candidate, AnalysisError where
-    the nominal model cannot be simulated.
+    Raises RecordError for records that do not fit the bench, ParameterError for a bad candidate, PlaceError for the name of a record
+    that there is not, AnalysisError where the nominal model cannot be simulated.
     """
     started = time.monotonic()
     chosen = _records(records)
     known = bench if isinstance(bench, Bench) else assumed_bench(bench, chosen)
     check_records(known, chosen)
     trials_of = {record.name: known.trials(record) for record in chosen}
-    trials = [trial for found in trials_of.values() for trial in found]
-    searched = [trial for name in known.searched for trial in trials_of.get(name, ())] or trials
-    if not trials:
-        raise ParameterError("A diagnosis needs at least one record.")
+    searched, trials = split_up(trials_of, known.searched, held_out)
     factors = factors_of(known)
     tried = all_candidates(trials[0].scene, candidates)
     step = suitable_step(trials, factors) if step is None else step
     coarse, fine = Simulator(searched, step, EVERY), Simulator(trials, step)
     check_trials(coarse, factors)
+    if held_out:
+        check_trials(Simulator([trial for trial in trials if trial.held_out.all()], step, EVERY), factors)
     changed, left = record_words(chosen)
     warnings = (*changed, *not_driven(known, chosen, coarse, factors), *not_compared(known, chosen), *looks_scaled(coarse, factors))
     check_candidates(tried, coarse, factors)
@@ -112,6 +115,7 @@ def diagnose(
         "every": EVERY,
         "candidates": [f"{item.kind.__name__}@{item.at}" for item in tried],
         "searched": sorted({trial.name for trial in searched}),
+        "held_out": list(held_out),
     }
     del evidence, coarse, fine, trials, trials_of, searched
     give_back()
@@ -133,6 +137,7 @@ def _records(records: Records | Sequence[Record] | Record) -> tuple[Record, ...]
         if not isinstance(record, Record):
             raise ParameterError(f"{record!r} is no record. Read it first: hm.diagnose(bench, hm.read_records({records!r})).")
         record.checked()  # before a bench is made from them
+    Records(records=found).checked()  # clocks of one run against each other
     return found
 
 

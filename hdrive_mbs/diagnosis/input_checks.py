@@ -169,7 +169,7 @@ def _check_samples(trial: Trial) -> None:
         there = np.isfinite(values)
         seen = int((there & ~trial.held_out).sum())
         held += int((there & trial.held_out).sum())
-        if seen < LEAST:
+        if seen < LEAST and not trial.held_out.all():
             raise RecordError(
                 f"Record {trial.name!r}: {column!r} has {seen} values that a fit may see; needed are {LEAST}."
                 f" Leave the column out (record.without({column!r})), or record longer."

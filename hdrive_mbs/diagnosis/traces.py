@@ -50,8 +50,8 @@ def traces(simulator: Simulator, nominal: Fitted, refit: Fitted, effect: Fitted)
 
 
 def _offset(left: FloatArray, trial: Trial) -> float:
-    """What is left of an offset on average, over the samples of the fit."""
-    used = np.isfinite(left) & ~trial.held_out
+    """What is left of an offset on average, over the samples of the fit, or all where it has seen none."""
+    used = np.isfinite(left) & (~trial.held_out | trial.held_out.all())
     return float(left[used].mean()) if used.any() else 0.0
 
 

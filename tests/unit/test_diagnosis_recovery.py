@@ -7,6 +7,7 @@ fails by chance once in 16 000 asserts.
 
 from __future__ import annotations
 
+import itertools
 import math
 from functools import cache
 
@@ -172,6 +173,10 @@ def test_places_that_the_records_cannot_tell_apart_are_both_named() -> None:
     assert found.causes[0].at in ("motor", "wave_generator")
     assert found.causes[0].probability < 0.9
     assert {item.at for item in found.ranking[:2]} == {"motor", "wave_generator"}
+    assert set(found.fits) >= claimed | set(found.indistinguishable)
+    assert found.next_records, found.notes
+    assert all({item.first, item.second} == claimed | set(found.indistinguishable) for item in found.next_records)
+    assert all(a.detectability >= b.detectability for a, b in itertools.pairwise(found.next_records))
     assert abs(found.gap.effect.value - 1.0) < NEAR_ONE
 
 
@@ -183,6 +188,32 @@ def test_records_of_different_sampling_are_diagnosed_together() -> None:
     assert holds(estimates(found.causes[0])["amplitude"], 1e-4)
     assert abs(found.gap.effect.value - 1.0) < NEAR_ONE
     assert {gap.record for gap in found.gaps[1:]} == {"staircase", "load_cycle"}
+
+
+@cache
+def with_a_whole_record_held_out() -> Diagnosis:
+    cause = KinematicError(amplitude=1e-4, order=2.0, phase=0.8), "gear"
+    return diagnose(bench(), records(cause), candidates=(KinematicError, SensorGain), held_out=("load_cycle",))
+
+
+def test_a_whole_record_is_held_out_and_the_gap_measured_on_it_alone() -> None:
+    found = with_a_whole_record_held_out()
+    assert [(item.effect, item.at) for item in found.causes] == [("kinematic_error", "gear")]
+    assert holds(estimates(found.causes[0])["amplitude"], 1e-4)
+    assert {gap.record for gap in found.gaps[1:]} == {"load_cycle"}
+    assert abs(found.gap.effect.value - 1.0) < 4.0 / math.sqrt(2.0 * len(CHANNELS) * DURATION / STEP)
+    for trace in found.traces:
+        assert trace.held_out.all() == (trace.record == "load_cycle")
+        assert trace.held_out.any() == (trace.record == "load_cycle")
+    assert found.settings["held_out"] == ["load_cycle"]
+    assert found.settings["searched"] == ["staircase"]
+
+
+def test_what_is_held_out_must_be_there_and_leave_something() -> None:
+    with pytest.raises(hm.PlaceError, match="sweep"):
+        diagnose(bench(), quiet(), candidates=(SensorGain,), held_out=("sweep",))
+    with pytest.raises(hm.ParameterError, match="All records are held out"):
+        diagnose(bench(), quiet(), candidates=(SensorGain,), held_out=tuple(INPUTS))
 
 
 def test_the_improved_scene_can_be_run_and_closes_the_gap_on_the_engine() -> None:
