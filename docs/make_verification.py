@@ -213,7 +213,9 @@ def others() -> Iterator[Case]:
                     what=name,
                     published=text,
                     ours=float(whirling[2 * k if speed == 0.0 else k]),
-                    note="polar inertia of the shaft at its stations",
+                    note="polar inertia of the shaft at its stations"
+                    if speed
+                    else "the bearings give way: 1.7e-8 times the number squared",
                 )
             )
     yield Case(

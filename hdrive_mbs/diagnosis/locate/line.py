@@ -57,7 +57,7 @@ def line(motion: Motion, at: str | None = None, like: Observer | None = None) ->
     if not network.is_lateral:
         given = sources(network)
     elif _lateral(trial, network):
-        given, sensors = lateral_sources(network, driven), _pairs(trial, network)
+        given, sensors = lateral_sources(network, _coupled(network, driven)), _pairs(trial, network)
     else:
         given = turning_sources(network, driven)
     if network.is_lateral and at is not None:
@@ -101,6 +101,12 @@ def _driven(trial: Trial, network: Network) -> dict[str, str]:
     return {
         network.places[name]: name for name, part in trial.scene.parts.items() if isinstance(part, DriveTorque) and name in network.places
     }
+
+
+def _coupled(network: Network, driven: Mapping[str, str]) -> dict[str, str]:
+    """Those that a coupling joins to their drive: what shakes a rotor that is driven itself is its own."""
+    rotors = {rotor.coordinates[5] for rotor in network.rotors}
+    return {station: part for station, part in driven.items() if station not in rotors}
 
 
 def _reads(trial: Trial, network: Network, column: str) -> str:

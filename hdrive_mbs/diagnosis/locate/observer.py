@@ -22,13 +22,20 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import expm
 
+from hdrive_mbs.errors import AnalysisError
+
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 STRONG = 1e4
 """Power of the white force at each place over that of the noise, where it shows most: the larger the sooner it forgets."""
+HIDDEN = 1e-9
+"""Share of what the force that shows most shows, below which one counts as hidden, by symmetry say, and is not reckoned with: to show
+as much as the others it would have to be without limit."""
 ROUNDS, MORE = 400, 40
 """Of the covariance's recursion in the first stretch, and in each of the next."""
+GROWS = 1.1
+"""Factor by which errors may grow within a stretch: a line that turns freely has a motion that neither grows nor fades."""
 STRIDE = 8
 """Samples that are worked out at a time."""
 FINER, NEAR = 4, 10
@@ -82,6 +89,13 @@ class Observer:
         return found
 
     @property
+    def growth(self) -> float:
+        """Logarithm by which the slowest error grows in a sample, the largest of all stretches; inf where it is no number."""
+        if not np.isfinite(self.kept).all():
+            return math.inf
+        return math.log(max(float(np.max(np.abs(np.linalg.eigvals(kept)))) for kept in self.kept))
+
+    @property
     def memory(self) -> float:
         """Samples in which the slowest error falls to 1/e, the longest of all stretches."""
         radius = max(float(np.max(np.abs(np.linalg.eigvals(kept)))) for kept in self.kept)
@@ -106,6 +120,8 @@ def observer(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray, noise: 
     """For x' = A x + B f, y = C x + D f in each stretch.
 
     a : (stretches, states, states), and so on;  noise : standard deviation of each column;  every : s;  length : of a stretch
+
+    Raises AnalysisError where errors grow: residuals cannot be followed then.
     """
     kept, gains = [], []
     covariance = None
@@ -114,7 +130,8 @@ def observer(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray, noise: 
         free = expm(a[k] * every)
         moved = free @ b[k] * every
         shown = np.abs(_steady(free, moved, c[k], d[k], every)) / scale[:, None]
-        size = np.sqrt(STRONG) / np.maximum(np.max(shown, axis=(0, 1)), 1e-300)
+        most = np.max(shown, axis=(0, 1))
+        size = np.where(most > HIDDEN * np.max(most), np.sqrt(STRONG) / np.maximum(most, 1e-300), 0.0)
         push, through = moved * size, d[k] * size
         process, cross = push @ push.T, push @ through.T
         direct = through @ through.T + np.diag(scale**2)
@@ -126,7 +143,14 @@ def observer(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray, noise: 
             covariance = 0.5 * (covariance + covariance.T)
         kept.append(free - gain @ c[k])
         gains.append(gain)
-    return Observer(np.array(kept), np.array(gains), np.array(c), length, every)
+    found = Observer(np.array(kept), np.array(gains), np.array(c), length, every)
+    if not found.growth <= math.log(GROWS) / length:
+        grown = math.exp(min(found.growth * length, 700.0))
+        raise AnalysisError(
+            f"The residuals cannot be followed along the records: their errors would grow by a factor of {grown:.3g} within"
+            f" {length * every:.3g} s. Record another column, like the angle of the shaft."
+        )
+    return found
 
 
 def _steady(free: FloatArray, moved: FloatArray, c: FloatArray, d: FloatArray, every: float) -> ComplexArray:
