@@ -73,7 +73,7 @@ def sweep(
             help="FIRST:LAST:COUNT, FIRST:LAST:COUNT:log, or A,B,C; with units '9 arcmin:12 arcmin:4'. Several times: every combination.",
         ),
     ],
-    analysis: Annotated[str, typer.Option(help="modes, campbell, run_up or start_up.")] = "modes",
+    analysis: Annotated[str, typer.Option(help="modes, campbell, run-up or start-up.")] = "modes",
     set_: Settings = None,
     effect: Effects = None,
     effects: EffectFiles = None,
@@ -98,6 +98,8 @@ def sweep(
     from hdrive_mbs.campaign.points import grid
     from hdrive_mbs.campaign.scene_analysis import SceneAnalysis
     from hdrive_mbs.campaign.sweeping import sweep as run
+
+    analysis = analysis.replace("-", "_")  # like the commands run-up and start-up
 
     given: dict[str, Any] = {
         "torque": torque,

@@ -93,6 +93,12 @@ def test_an_argument_of_build_can_be_varied_and_a_campbell_swept(tmp_path: Path)
         invoke(LINE, "--vary", "bearin=full,improved", "--out", str(tmp_path))
 
 
+def test_an_analysis_may_be_written_like_its_command(tmp_path: Path) -> None:
+    words = [LINE, "--vary", "rotor_1.mass=8,9", "--analysis", "run-up", "--duration", "0.02", "--workers", "1", "--out", str(tmp_path)]
+    assert invoke(*words).exit_code == 0
+    assert len(hm.Campaign.load(tmp_path / "campaign.npz").parameters["rotor_1.mass"]) == 2
+
+
 def test_a_scene_with_a_class_of_its_file_is_opened_anew_by_the_workers(tmp_path: Path) -> None:
     # the characteristic of the drive is a class of that file, deep inside a part of this package
     done = invoke(LINE, "--vary", "rotor_1.mass=8,9", "--count", "1", "--workers", "1", "--out", str(tmp_path))
