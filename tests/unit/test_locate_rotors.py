@@ -244,6 +244,46 @@ def test_the_transfer_of_an_observer_is_that_of_its_errors() -> None:
         assert watcher.noise_transfer(rates)[0, :, :, k] == pytest.approx(spectrum.T, abs=1e-9)
 
 
+@pytest.mark.parametrize("length", [64, 61, 5])
+def test_errors_are_those_of_the_recursion_whatever_the_length_of_a_stretch(length: int) -> None:
+    a, b, c, d = ringing()
+    stretches, samples = 4, 4 * length - 2
+    stiffer = np.array([a * (1.0 + 0.05 * k) for k in range(stretches)])
+    pushed, read, through = (np.repeat(part[None], stretches, axis=0) for part in (b, c, d))
+    watcher = observer(stiffer, pushed, read, through, np.full(2, 1e-9), bench.SAMPLE_TIME, length)
+    rows = np.random.default_rng(4).standard_normal((3, 2, samples))
+    wanted = np.empty_like(rows)
+    state = np.zeros((4, 3))
+    for k in range(samples):
+        part = k // length
+        wanted[:, :, k] = rows[:, :, k] - (watcher.read[part] @ state).T
+        state = expm(stiffer[part] * bench.SAMPLE_TIME) @ state + watcher.gain[part] @ wanted[:, :, k].T
+    assert watcher.errors(rows) == pytest.approx(wanted, abs=1e-9)
+
+
+def test_a_force_that_no_column_shows_leaves_the_observer_as_it_is() -> None:
+    """A third oscillator that nothing is joined to: a force on it would have to be without limit to show as much as the others."""
+    a, b, c, _ = ringing()
+    wide = np.zeros((6, 6))
+    wide[:4, :4], wide[4:, 4:] = a, [[0.0, 1.0], [-(500.0**2), -5.0]]
+    pushed = np.zeros((6, 3))
+    pushed[:4, :2], pushed[5, 2] = b, 1.0
+    read = np.hstack([c, np.full((2, 2), 1e-19)])
+    made = observer(wide[None], pushed[None], read[None], np.zeros((1, 2, 3)), np.full(2, 1e-9), bench.SAMPLE_TIME, 200)
+    assert made.gain[0][:4] == pytest.approx(watching(200).gain[0], rel=1e-6)
+    assert np.abs(made.gain[0][4:]).max() < 1e-6 * np.abs(made.gain[0]).max()
+
+
+def test_errors_that_would_grow_are_refused() -> None:
+    """A motion that grows and that no column shows: an observer cannot hold it."""
+    a, b, c, d = ringing()
+    wide = np.zeros((5, 5))
+    wide[:4, :4], wide[4, 4] = a, 40.0
+    pushed, read = np.vstack([b, np.zeros((1, 2))]), np.hstack([c, np.zeros((2, 1))])
+    with pytest.raises(hm.AnalysisError, match=r"grow by a factor of 7\.39 within 0\.05 s"):
+        observer(wide[None], pushed[None], read[None], d[None], np.full(2, 1e-9), bench.SAMPLE_TIME, round(0.05 / bench.SAMPLE_TIME))
+
+
 def test_an_observer_forgets_a_vibration_soon_after_its_force_has_ended() -> None:
     a, b, c, _ = ringing()
     samples, end, later = 3000, 1000, 1200

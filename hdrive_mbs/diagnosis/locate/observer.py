@@ -65,10 +65,14 @@ class Observer:
         found = np.empty_like(padded)
         state = np.zeros((self.kept.shape[1], number))
         for k in range(stretches):
-            seen, driven, moved, pushed = _strided(self.kept[k], self.gain[k], self.read[k])
-            for at in range(k * self.length, (k + 1) * self.length, STRIDE):
-                given = padded[at : at + STRIDE].reshape(-1, number)
-                found[at : at + STRIDE] = (given - seen @ state - driven @ given).reshape(STRIDE, columns, number)
+            own = self.kept[k], self.gain[k], self.read[k]
+            whole, rest = _strided(*own, STRIDE), _strided(*own, self.length % STRIDE)
+            end = (k + 1) * self.length
+            for at in range(k * self.length, end, STRIDE):
+                count = min(STRIDE, end - at)
+                seen, driven, moved, pushed = whole if count == STRIDE else rest
+                given = padded[at : at + count].reshape(-1, number)
+                found[at : at + count] = (given - seen @ state - driven @ given).reshape(count, columns, number)
                 state = moved @ state + pushed @ given
         return np.ascontiguousarray(found[:samples].transpose(2, 1, 0))
 
@@ -102,13 +106,13 @@ class Observer:
         return -1.0 / math.log(min(radius, 1.0 - 1e-9))
 
 
-def _strided(kept: FloatArray, gain: FloatArray, read: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """What STRIDE samples show of the state at their beginning and of each other, and where they take the state."""
+def _strided(kept: FloatArray, gain: FloatArray, read: FloatArray, count: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """What so many samples show of the state at their beginning and of each other, and where they take the state."""
     columns, states = read.shape
-    seen = np.zeros((STRIDE * columns, states))
-    driven = np.zeros((STRIDE * columns, STRIDE * columns))
-    moved, pushed = np.eye(states), np.zeros((states, STRIDE * columns))
-    for k in range(STRIDE):
+    seen = np.zeros((count * columns, states))
+    driven = np.zeros((count * columns, count * columns))
+    moved, pushed = np.eye(states), np.zeros((states, count * columns))
+    for k in range(count):
         at = slice(k * columns, (k + 1) * columns)
         seen[at], driven[at] = read @ moved, read @ pushed
         moved, pushed = kept @ moved, kept @ pushed
