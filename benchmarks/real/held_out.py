@@ -36,16 +36,20 @@ def measured(channel: str, floor: Floor, *, offset: float = 0.0) -> Measured:
     return Measured(channel=channel, noise=floor.white, coloured=(floor.coloured, floor.kept), offset=offset)
 
 
-def unseen(bench: Bench, scene: hm.Scene, record: Record, step: float) -> Unseen:
-    """The record under a scene as it is: nothing is fitted but offsets."""
+def unseen(bench: Bench, scene: hm.Scene, record: Record, step: float, since: float = 0.0) -> Unseen:
+    """The record under a scene as it is: nothing is fitted but offsets.
+
+    since : time from which what is left counts [s]
+    """
     (trial,) = replace(bench, scene=scene).trials(record)
     (own,) = Simulator([trial], step).columns(Hypothesis(()), np.zeros(0))
     if not own:
         raise hm.AnalysisError(f"{scene.name!r} cannot be simulated through record {record.name!r}; try a shorter step than {step:g} s.")
     left = {}
     simulated = {}
+    counts = trial.times >= since
     for column, values in trial.columns.items():
-        moved = float(np.nanmean(values - own[column])) if bench.measured[column].offset > 0.0 else 0.0
+        moved = float(np.nanmean((values - own[column])[counts])) if bench.measured[column].offset > 0.0 else 0.0
         simulated[column] = own[column] + moved
-        left[column] = float(np.sqrt(np.nanmean((values - simulated[column]) ** 2)))
+        left[column] = float(np.sqrt(np.nanmean((values - simulated[column])[counts] ** 2)))
     return Unseen(measured=trial.columns, simulated=simulated, rms=left)

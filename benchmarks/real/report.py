@@ -142,6 +142,8 @@ def _rk4(n: Mapping[str, Any]) -> str:
         [
             "## rk4_rotor: unbalance, and in which plane",
             _rounds(rows),
+            "The end of the run-up, above 1810 rpm, which no fit and no verdict saw, rms of what is left of the probe:",
+            _unseen(n["run_up"]["unseen"], n["run_up"]["floor"], dict.fromkeys(n["run_up"]["floor"], ("um", 1e6))),
             "Put in [g mm]:",
             table(("condition", "disc 1", "disc 2"), put),
             "With measured influence vectors (all other conditions) in place of a model:",

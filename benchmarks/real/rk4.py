@@ -228,8 +228,14 @@ def dwell_case(condition: str) -> tuple[OrderBench, list[Record]]:
     return bench(motions, noise), made
 
 
-RUN_UP_SAMPLES = 160.0
-"""Of the run-up [1/s]."""
+RUN_UP_SAMPLES, SEEN = 160.0, 0.8
+"""Of the run-up [1/s]; the share of its time that a diagnosis sees, up to 1810 rpm, past the critical speed."""
+
+
+def run_up_seen() -> float:
+    """Time up to which the run-up is diagnosed [s]; what comes after is to be foretold."""
+    speeds, _ = run_up()
+    return LEAD + SEEN * float(speeds[-1] - speeds[0]) / RUN_UP_RATE
 
 
 def run_up_case() -> tuple[OrderBench, list[Record]]:

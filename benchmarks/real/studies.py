@@ -67,7 +67,12 @@ def staubli_study() -> Study:
             every = staubli.THIN * staubli.SAMPLE_TIME
             rows = {f"torque_{axis}": (f"torque of axis {axis} [N m]", 1.0) for axis in axes}
             figures["staubli_wrist"] = histories(tried, every, rows, staubli.HELD_OUT)
-    numbers |= {"published": staubli.PUBLISHED, "coupled": staubli.COUPLED, "seconds": time.monotonic() - started, "machine": machine()}
+    numbers |= {
+        "published": {str(axis): value for axis, value in staubli.PUBLISHED.items()},
+        "coupled": staubli.COUPLED,
+        "seconds": time.monotonic() - started,
+        "machine": machine(),
+    }
     return numbers, figures
 
 
@@ -81,9 +86,13 @@ def rk4_study() -> Study:
     numbers: dict[str, Any] = {}
     for name in ("run_up", *CONDITIONS):
         bench, records = rk4.run_up_case() if name == "run_up" else rk4.dwell_case(name)
-        found = rounds(bench, records, rk4.LAWS, step=rk4.STEP, most=2)
+        until = rk4.run_up_seen()
+        seen = [record.between(0.0, until) for record in records] if name == "run_up" else records
+        found = rounds(bench, seen, rk4.LAWS, step=rk4.STEP, most=2)
         own = {"floor": {key: item.total for key, item in bench.measured.items()}, "rounds": [_round(item) for item in found]}
-        if name != "run_up":
+        if name == "run_up":
+            own["unseen"] = {key: dict(item.rms) for key, item in _tried(bench, found, records[0], rk4.STEP, since=until).items()}
+        else:
             first, second, *_ = next(item for (condition, _), item in rk4.dwells().items() if condition == name)
             own["put_in"] = {"disc_1": abs(first), "disc_2": abs(second)}
         numbers[name] = own
@@ -95,12 +104,14 @@ def rk4_study() -> Study:
 STUDIES: dict[str, Callable[[], Study]] = {"kuka": kuka_study, "staubli": staubli_study, "rk4": rk4_study}
 
 
-def _tried(bench: Bench, found: Sequence[Round], out: Record, step: float, speeds: Mapping[str, float] | None = None) -> dict[str, Unseen]:
-    """Every scene of the rounds on a record that none has seen; the refitted one is that of the first round."""
+def _tried(
+    bench: Bench, found: Sequence[Round], out: Record, step: float, speeds: Mapping[str, float] | None = None, since: float = 0.0
+) -> dict[str, Unseen]:
+    """Every scene of the rounds on a record, or what comes after a time [s], that none has seen; the refitted one is of the first round."""
     at = bench if speeds is None else replace(bench, speeds=speeds)
     scenes: dict[str, hm.Scene] = {"nominal": bench.scene, "refitted": found[0].refit}
     scenes |= {f"round {k}": item.answer.improved for k, item in enumerate(found, start=1) if item.accepted}
-    return {name: unseen(at, scene, out, step) for name, scene in scenes.items()}
+    return {name: unseen(at, scene, out, step, since) for name, scene in scenes.items()}
 
 
 def _round(item: Round) -> dict[str, Any]:

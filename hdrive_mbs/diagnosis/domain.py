@@ -36,14 +36,8 @@ ORDERS, STEP, TURNS = 24, 4, 8
 """Highest order, steps of an order at which it is looked at, and turns of a window."""
 WINDOW = 1024
 """Samples of a window of the frequency bins."""
-CLEAR = 5.0
-"""Standard deviations of the mean square of noise above which a bin's excess is clear."""
-PEAK = 3.0
-"""Times the larger of the two beside it that an order must be to stand out."""
 SAME = 1e-3
 """Of its largest: by what the modelled reading of a column may differ from the speed of the reference shaft and still be it."""
-MOST, FEW = 0.6, 0.35
-"""The gap is concentrated where more than this share of its energy lies in less than this share of the samples."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,48 +215,3 @@ def _orders(shaft: str, stretches: Sequence[_Stretch]) -> Iterator[DomainBin]:
         if count[near].sum() > 0.0:
             energies = (float(total[near].sum()) for total in (before, after, count))
             yield _bin("order", shaft, "1", max(order - 0.5, 0.0), order + 0.5, *energies)
-
-
-def concentrated(bins: Sequence[DomainBin]) -> tuple[str, ...]:
-    """In words, where most of the gap lies in few of the samples: "at speeds above 80 rad/s", "at order 2 of the motor shaft"."""
-    found = []
-    for over in dict.fromkeys(item.over for item in bins):
-        own = [item for item in bins if item.over == over]
-        clear = np.array([item.excess > CLEAR * math.sqrt(2.0 / item.samples) for item in own])
-        energy = np.array([item.excess * item.samples for item in own]) * clear
-        if over == "order":
-            found += _peaks(own, clear)
-        elif clear.any():
-            samples = np.array([float(item.samples) for item in own])
-            order = np.argsort([-item.excess for item in own])
-            needed = int(np.searchsorted(np.cumsum(energy[order]), MOST * energy.sum())) + 1
-            chosen = sorted(order[:needed].tolist())
-            in_row = chosen == list(range(chosen[0], chosen[-1] + 1))
-            if samples[chosen].sum() < FEW * samples.sum() and in_row:
-                found.append(_words(over, [own[k] for k in chosen], own))
-    return tuple(found)
-
-
-def _peaks(own: Sequence[DomainBin], clear: Mask) -> list[str]:
-    """Orders that stand out from those beside them, largest first."""
-    excess = np.array([item.excess for item in own])
-    beside = np.maximum(np.append(excess[1:], excess[-2:-1]), np.insert(excess[:-1], 0, np.inf))
-    at = [k for k in np.argsort(-excess) if clear[k] and excess[k] > PEAK * max(float(beside[k]), 0.0)]
-    orders = [f"{(own[k].low + own[k].high) / 2.0:.0f}" for k in at[:3]]
-    return [f"at order {' and '.join(orders)} of the motor shaft"] if orders else []
-
-
-def _words(over: str, chosen: Sequence[DomainBin], own: Sequence[DomainBin]) -> str:
-    low, high, unit = chosen[0].low, chosen[-1].high, chosen[0].unit
-    if over == "direction":
-        return "at reversals and at rest" if low < 0.0 < high else "when turning backward" if high <= 0.0 else "when turning forward"
-    if over == "torque" and low < 0.0 < high and len(chosen) == 1:
-        return "where the torque crosses zero"
-    if over == "time":
-        return f"from {low:.3g} to {high:.3g} {unit}"
-    name = {"speed": "speeds", "torque": "torques", "frequency": "frequencies"}[over]
-    if chosen[-1] is own[-1]:
-        return f"at {name} above {low:.3g} {unit}"
-    if chosen[0] is own[0]:
-        return f"at {name} below {high:.3g} {unit}"
-    return f"at {name} from {low:.3g} to {high:.3g} {unit}"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.diagnosis.domain import concentrated, domain_map
+from hdrive_mbs.diagnosis.domain import domain_map
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.result import DomainBin
@@ -28,7 +28,6 @@ def test_noise_alone_is_nowhere_in_particular() -> None:
     assert {item.over for item in bins} == {"speed", "torque", "direction", "order", "frequency", "time"}
     for over in ("speed", "torque", "direction", "time"):
         assert sum(item.samples for item in bins_over(bins, over)) == simulator.used.sum()
-    assert concentrated(bins) == ()
     # a mean square of n normal numbers is 1 +- sqrt(2/n); quantised angles are a little quieter or louder
     for item in bins_over(bins, "torque"):
         assert abs(item.excess) < 6.0 * math.sqrt(2.0 / item.samples) + 0.1
@@ -43,7 +42,6 @@ def test_a_ripple_shows_at_its_order_and_frequency() -> None:
     bins = domain_map(rippled, fitted(rippled))
     excess = {round(item.low + 0.5): item.excess for item in bins_over(bins, "order")}
     assert excess[5] > 10.0 * max(excess[4], excess[6])
-    assert any(text.startswith("at order") and "5" in text for text in concentrated(bins))
 
 
 def test_a_gap_at_one_time_is_found_then_and_at_its_torque() -> None:
@@ -54,7 +52,8 @@ def test_a_gap_at_one_time_is_found_then_and_at_its_torque() -> None:
     worst = max(bins_over(bins, "time"), key=lambda item: item.excess)
     assert worst.low < 2.4
     assert worst.high > 2.1
-    assert any(text.startswith("from 2") and text.endswith(" s") for text in concentrated(bins))
+    quiet = [item.excess for item in bins_over(bins, "time") if item.high < 2.0 or item.low > 2.5]
+    assert worst.excess > 10.0 * max(quiet)  # it rings on for a while
     loaded = max(bins_over(bins, "torque"), key=lambda item: item.excess)
     assert loaded.low < 120.0 < loaded.high + 30.0
 
@@ -71,31 +70,6 @@ def test_a_claimed_cause_is_shown_beside_the_gap() -> None:
     bins = domain_map(simulator, fitted(simulator), fitted(clean))
     total = bins_over(bins, "speed")
     assert sum(item.excess * item.samples for item in total) > 10.0 * sum(abs(item.after) * item.samples for item in total)
-
-
-@pytest.mark.parametrize(
-    ("over", "unit", "energies", "words"),
-    [
-        ("speed", "rad/s", (0.0, 0.0, 9.0, 9.0), "at speeds above 10 rad/s"),
-        ("torque", "N m", (9.0, 0.0, 0.0, 0.0), "at torques below 5 N m"),
-        ("frequency", "rad/s", (0.0, 9.0, 0.0, 0.0), "at frequencies from 5 to 10 rad/s"),
-    ],
-)
-def test_sentences_name_the_range(over: str, unit: str, energies: tuple[float, ...], words: str) -> None:
-    bins = [
-        DomainBin(
-            over=over, unit=unit, low=5.0 * k, high=5.0 * (k + 1), excess=energy, after=math.nan, samples=1000 if energy == 0.0 else 300
-        )
-        for k, energy in enumerate(energies)
-    ]
-    assert concentrated(bins) == (words,)
-
-
-def test_sentences_name_reversals_and_the_crossing_of_zero_torque() -> None:
-    shares = ((-10.0, -0.2, 0.1, 4000), (-0.2, 0.2, 50.0, 500), (0.2, 10.0, 0.1, 4000))
-    for over, unit, words in (("direction", "rad/s", "at reversals and at rest"), ("torque", "N m", "where the torque crosses zero")):
-        bins = [DomainBin(over=over, unit=unit, low=a, high=b, excess=e, after=math.nan, samples=n) for a, b, e, n in shares]
-        assert concentrated(bins) == (words,)
 
 
 def test_speeds_are_those_that_were_measured_and_named_with_their_place() -> None:
