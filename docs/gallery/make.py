@@ -21,6 +21,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1]))
 
 from matplotlib.axes import Axes  # noqa: E402
+from PIL import Image  # noqa: E402
 
 DOTS_PER_INCH = 110
 
@@ -53,12 +54,13 @@ def ran(page: str) -> dict[str, Any]:
 
 
 def saved(name: str, folder: Path) -> Path:
-    """Picture of a script as PNG; without a date, so that the same picture gives the same file."""
+    """Picture of a script as PNG of 256 colours; without a date, so that the same picture gives the same file."""
     buffer = io.BytesIO()
     drawn(name).figure.savefig(buffer, format="png", dpi=DOTS_PER_INCH, metadata={"Software": None})
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.png"
-    path.write_bytes(buffer.getvalue())
+    with Image.open(buffer) as picture:
+        picture.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
     return path
 
 

@@ -22,7 +22,7 @@ def plot_loop(diagnosis: Diagnosis, ax: Axes | None = None, *, record: str | Non
     if record is not None and record not in known:
         raise unknown_place("record", record, dict.fromkeys(known), "Among the loops this diagnosis")
     loop = next(item for item in diagnosis.loops if record in (None, item.record))
-    curves = [(loop.measured, "measured", MEASURED), (loop.refit, "parameters refitted", REFIT)]
+    curves = [(loop.measured, "estimated", MEASURED), (loop.refit, "parameters refitted", REFIT)]
     if diagnosis.causes:
         curves.append((loop.effect, "with the cause", EFFECT))
     shown = [(curve, text, look) for curve, text, look in curves if curve.size]

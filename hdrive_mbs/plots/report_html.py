@@ -127,7 +127,7 @@ def _where(diagnosis: Diagnosis) -> Iterator[str]:
         yield figure(axes, text, f"What must have acted at {force.at} for the refitted model to follow the record.", points=True)
     for loop in diagnosis.loops:
         axes = plot_loop(diagnosis, record=loop.record)
-        text = f"Loop of torque against twist of {loop.at} during record {loop.record}: measured, before and after."
+        text = f"Loop of torque against twist of {loop.at} during record {loop.record}: estimated from the record, before and after."
         yield figure(axes, text, f"Hysteresis loop of {loop.at}, record {loop.record}, without its straight line.")
 
 
