@@ -79,8 +79,9 @@ class CaseDiagnosis:
         files = record_files(Path(str(point["records"])))
         if content_hash(files) != point["sha256"]:
             raise FileFormatError(f"{point['records']}: the records differ on this machine from the caller's, or have changed since.")
-        bench = open_bench(self.bench.opened()) if isinstance(self.bench, GivenFile) else self.bench
-        kinds = tried([item.opened() for item in self.effects], self.only)
+        own = [item.opened() for item in self.effects]
+        kinds = tried(own, self.only)
+        bench = open_bench(self.bench.opened(), own) if isinstance(self.bench, GivenFile) else self.bench
         measured = measured_in(files, self.reading)
         from hdrive_mbs.diagnosis.diagnose import diagnose as run
 
@@ -112,7 +113,8 @@ def report_files(result: Diagnosis) -> dict[str, Any]:
     with tempfile.TemporaryDirectory(prefix="hdrive_mbs_") as folder:
         with contextlib.redirect_stderr(sys.stdout):
             write_answer(result, Path(folder))
-        return {path.name: np.frombuffer(path.read_bytes(), dtype=np.uint8) for path in sorted(Path(folder).iterdir())}
+        written = (path for path in sorted(Path(folder).rglob("*")) if path.is_file())
+        return {path.relative_to(folder).as_posix(): np.frombuffer(path.read_bytes(), dtype=np.uint8) for path in written}
 
 
 def content_hash(files: Iterable[Path]) -> str:

@@ -16,7 +16,7 @@ import typer
 
 from hdrive_mbs.cli.options import JsonFile
 from hdrive_mbs.cli.output import write_json
-from hdrive_mbs.cli.python_file import imported, lines_named, own_effects
+from hdrive_mbs.cli.python_file import imported, lines_named, own_types
 from hdrive_mbs.cli.records_options import BenchFile, Channels, HeldOut, Only, OwnEffects, Repairs, TimeColumn, Units, reading_of
 from hdrive_mbs.cli.stages import stage_bars
 from hdrive_mbs.errors import FileFormatError, HdriveError, SceneError, unknown_place
@@ -53,8 +53,8 @@ def diagnose(
     json: JsonFile = None,
 ) -> None:
     """Say where the gap between simulation and records lies, which effect causes it, and how far it shrinks once that is added."""
-    chosen = open_bench(scene)
     kinds = tried(effects or (), only or ())
+    chosen = open_bench(scene, effects or ())
     reading = reading_of(channel, unit, time, repair)
     paths = [*records, *(more or ())]
     measured = measured_in(paths, reading)
@@ -84,13 +84,15 @@ def diagnose(
         print(f"\nReport with pictures: {folder / 'diagnosis.html'}")
 
 
-def open_bench(path: Path) -> Bench | Scene:
+def open_bench(path: Path, own: Sequence[Path] = ()) -> Bench | Scene:
     """What the file gives: its bench(), or else its build(), or the scene of a scene file.
+
+    own : .py files with classes that a scene file names
 
     Raises FileFormatError or SceneError for a file that gives neither.
     """
     if path.suffix.lower() in (".toml", ".json"):
-        return load_scene(path)
+        return load_scene(path, [kind for file in own for kind in own_types(file)])
     module = imported(path, "a .py file with bench() -> Bench or build() -> Scene, or a .toml or .json scene")
     from hdrive_mbs.diagnosis.bench import Bench
 
@@ -107,15 +109,16 @@ def open_bench(path: Path) -> Bench | Scene:
 
 
 def tried(files: Sequence[Path], only: Sequence[str] = ()) -> list[type[Effect]] | None:
-    """The library and the effects of these files; None for the library alone.
+    """The library and the effects of these files, which may hold laws and parts too; None for the library alone.
 
     only : classes or families that are tried, all if empty;  raises PlaceError for one that there is not
     """
     if not files and not only:
         return None
-    own = [kind for path in files for kind in own_effects(path)]
     from hdrive_mbs.diagnosis.candidates import known_effects
+    from hdrive_mbs.effects.effect import Effect
 
+    own = [kind for path in files for kind in own_types(path) if issubclass(kind, Effect)]
     known = [*own, *(kind for kind in known_effects() if kind not in own)]
     names = dict.fromkeys(text for kind in known for text in (kind.__name__, kind.family))
     for name in only:
@@ -131,10 +134,7 @@ def write_answer(result: Diagnosis, folder: Path) -> None:
 
     write_report_json(result, folder / "diagnosis.json")
     write_report(result, folder / "diagnosis.txt")
-    try:
-        write_improved(result, folder)
-    except FileFormatError as error:
-        print(f"The improved scene was not written: {error}", file=sys.stderr)
+    write_improved(result, folder)
     from hdrive_mbs.plots import plot, save_figure
     from hdrive_mbs.plots.report_html import write_report_html
 
@@ -143,15 +143,25 @@ def write_answer(result: Diagnosis, folder: Path) -> None:
 
 
 def write_improved(result: Diagnosis, folder: Path) -> None:
-    """The improved scene, and in a folder beside it the same with the inputs of each record.
+    """The improved scene, and in a folder beside it the same with the inputs of each record, none of an earlier diagnosis left.
 
-    Raises FileFormatError where the scene holds Python functions.
+    A scene that holds Python functions is said not to be written.
     """
-    from hdrive_mbs.diagnosis.improved_words import FOLDER, driven_words, file_names, improved_words
+    from hdrive_mbs.diagnosis.improved_words import FOLDER, HEAD, driven_words, file_names, improved_words
 
-    save_scene(result.improved, folder / "improved.toml", head=improved_words(result))
-    for item, name in zip(result.driven, file_names(result.driven), strict=True):
-        save_scene(item.scene, folder / FOLDER / name, head=driven_words(item, name))
+    for old in (folder / FOLDER).glob("*.toml"):
+        with old.open(encoding="utf-8") as file:
+            ours = file.readline().startswith(f"# {HEAD}")
+        if ours:
+            old.unlink()
+    scenes = [(result.improved, folder / "improved.toml", improved_words(result))]
+    names = file_names(result.driven)
+    scenes += [(item.scene, folder / FOLDER / name, driven_words(item, name)) for item, name in zip(result.driven, names, strict=True)]
+    for scene, path, head in scenes:
+        try:
+            save_scene(scene, path, head=head)
+        except FileFormatError as error:
+            print(f"{path} was not written: {error}", file=sys.stderr)
 
 
 def measured_in(paths: Sequence[Path], reading: Mapping[str, Any]) -> Records:

@@ -54,8 +54,8 @@ def diagnose_all(
     from hdrive_mbs.diagnosis.digest import program
     from hdrive_mbs.records.reading import record_files
 
-    opened = open_bench(scene)
     tried(effects or (), only or ())  # says now what would fail in every case
+    opened = open_bench(scene, effects or ())
     reading = reading_of(channel, unit, time, repair)
     cases = cases_in([*records, *(more or ())])
     folder = out or Path("results") / re.sub(r"\W+", "_", f"diagnoses {scene.stem}")

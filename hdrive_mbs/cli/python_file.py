@@ -11,7 +11,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 
-from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import FileFormatError, HdriveError
 from hdrive_mbs.quantities import Described
 
@@ -41,24 +40,15 @@ def imported(path: Path, wanted: str) -> ModuleType:
 
 def own_types(path: Path) -> list[type[Described]]:
     """The effects, laws and parts that a file defines, which a scene may name.  Raises FileFormatError where it defines none."""
-    found = _defined(path)
-    if not found:
-        raise FileFormatError(f"{path}: defines no effect, law or part that a scene could name.")
-    return found
-
-
-def own_effects(path: Path) -> list[type[Effect]]:
-    """The effect classes that a file defines.  Raises FileFormatError where it defines none."""
-    found = [kind for kind in _defined(path) if issubclass(kind, Effect)]
-    if not found:
-        raise FileFormatError(f"{path}: defines no effect. Write a class that subclasses TorqueEffect, TwistEffect or another Effect.")
-    return found
-
-
-def _defined(path: Path) -> list[type[Described]]:
     module = imported(path, "a .py file with classes of your own")
     found = [kind for kind in vars(module).values() if isinstance(kind, type) and issubclass(kind, Described)]
-    return [kind for kind in found if kind.__module__ == module.__name__ and not inspect.isabstract(kind)]
+    own = [kind for kind in found if kind.__module__ == module.__name__ and not inspect.isabstract(kind)]
+    if not own:
+        raise FileFormatError(
+            f"{path}: defines no effect, law or part that a scene could name. Write a class that subclasses TorqueEffect, TwistEffect or"
+            " another Effect, or that of a law or part."
+        )
+    return own
 
 
 @contextmanager

@@ -110,9 +110,8 @@ class Bench:
         columns = self.columns_of(record)
         times = record.times
         every = even_step(record)
-        changes = {
-            item.path: item.law(tuple((times - times[0]).tolist()), tuple(columns[name].tolist())) for name, item in self.inputs.items()
-        }
+        moments = tuple((times - times[0]).tolist())
+        changes = {item.path: item.law(moments, tuple(columns[name].tolist())) for name, item in self.inputs.items()}
         return (
             Trial(
                 name=record.name,

@@ -59,7 +59,7 @@ def diagnose(
     workers: int | None = None,
     folder: str | Path | None = None,
     step: float | None = None,
-    held_out: Sequence[str] = (),
+    held_out: Sequence[str] | str = (),
     report: Report | None = None,
     pictures: bool = True,
     watch: Callable[[Evidence], object] | None = None,
@@ -73,8 +73,8 @@ def diagnose(
     workers : processes; 1 if not given.  With more, a script needs the line ``if __name__ == "__main__":`` before the call
     folder : where fits are kept, so that an interrupted diagnosis goes on from there
     step : of the integration [s], chosen if not given (``suitable_step``); what grows with it is run again with half of it
-    held_out : names of records that no fit may see, on which the gap is then measured; if not given, a quarter of every record, in
-        stretches
+    held_out : names of records that neither a fit nor the localisation may see, on which the gap is then measured, and which the
+        verdict asks whether a claim holds there too; if not given, a quarter of every record, in stretches
     report : called with (stage, done, total)
     pictures : with histories, located forces and maps for the report
     watch : called with all fits, for those who want more figures than the answer holds
@@ -87,15 +87,16 @@ def diagnose(
     known = bench if isinstance(bench, Bench) else assumed_bench(bench, chosen)
     check_records(known, chosen)
     trials_of = {record.name: known.trials(record) for record in chosen}
-    searched, trials = split_up(trials_of, known.searched, held_out)
+    aside = (held_out,) if isinstance(held_out, str) else tuple(held_out)
+    searched, trials = split_up(trials_of, known.searched, aside)
     factors = factors_of(known)
     tried = all_candidates(trials[0].scene, candidates)
     step = suitable_step(trials, factors) if step is None else step
     coarse, fine = Simulator(searched, step, EVERY), Simulator(trials, step)
     check_trials(coarse, factors)
-    if held_out:
-        check_trials(Simulator([trial for trial in trials if trial.held_out.all()], step, EVERY), factors)
-    changed, left = record_words(chosen)
+    if aside:
+        check_trials(Simulator([trial for trial in trials if trial.held_out.all()], step, EVERY), factors, fitted=False)
+    changed, reported = record_words(chosen)
     warnings = (*changed, *not_driven(known, chosen, coarse, factors), *not_compared(known, chosen), *looks_scaled(coarse, factors))
     check_candidates(tried, coarse, factors)
     journal = None
@@ -107,15 +108,15 @@ def diagnose(
     if watch is not None:
         watch(evidence)
     found = answer(known, chosen, evidence, started=started, pictures=pictures)
-    notes = (*left_out(tried, evidence.single, step), *team.lost, *(() if journal is None else journal.said), *left)
+    notes = (*left_out(tried, evidence.single, step), *team.lost, *(() if journal is None else journal.said), *reported)
     driven = {name: item.path for name, item in known.inputs.items()}
     files = {record.name: {"source": record.source, "sha256": record.sha256} for record in chosen if record.sha256}
     settings = {
         "step": step,
         "every": EVERY,
         "candidates": [f"{item.kind.__name__}@{item.at}" for item in tried],
-        "searched": sorted({trial.name for trial in searched}),
-        "held_out": list(held_out),
+        "searched": [name for name, own in trials_of.items() if any(trial in searched for trial in own)],
+        "held_out": list(aside),
     }
     del evidence, coarse, fine, trials, trials_of, searched
     give_back()

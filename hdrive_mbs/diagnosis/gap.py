@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.diagnosis.bench import units_of
 from hdrive_mbs.diagnosis.result import Gap, Misfit
 from hdrive_mbs.diagnosis.simulator import Simulator
 
@@ -35,7 +36,7 @@ def gaps(simulator: Simulator, nominal: FloatArray, refit: FloatArray, effect: F
     for k, segment in enumerate(simulator.segments):
         trial = simulator.trials[segment.trial]
         measured = trial.measured[segment.column]
-        unit = next((item.unit for item in trial.scene.network().channels if item.name == measured.channel), "")
+        unit = units_of(trial.scene.network()).get(measured.channel, "")
         if counts[k].sum() > 0:
             found.append(_gap(trial.name, segment.column, unit, measured.total, *_misfits(simulator, sums, counts, draws, [k])))
     return tuple(found)

@@ -16,6 +16,8 @@ from hdrive_mbs.scene import Scene
 
 FOLDER = "improved"
 """Folder beside improved.toml with a scene for each record."""
+HEAD = "The improved scene with the inputs of record"
+"""Begins each of these files."""
 
 
 def improved_words(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -28,10 +30,9 @@ def improved_words(diagnosis: Diagnosis) -> tuple[str, ...]:
             " where that is zero, 'hdrive-mbs run improved.toml' gives zeros."
         )
     if diagnosis.driven:
-        scenes = listed([f"{FOLDER}/{name}" for name in file_names(diagnosis.driven)])
         found.append(
-            f"The improved scene with the inputs of a record: {scenes}; the command that runs it stands at the head of the file."
-            " In Python: diagnosis.driven."
+            f"The improved scene with the inputs of each record is diagnosis.driven in Python; 'hdrive-mbs diagnose' writes it as"
+            f" {FOLDER}/RECORD.toml, the command that runs it at the head of the file."
         )
     files = own_files(diagnosis.improved)
     if files:
@@ -55,7 +56,7 @@ def driven_words(item: Driven, file: str) -> tuple[str, ...]:
     starts = "".join(f" --initial {name}={value!r}" for name, value in item.initial.items())
     effects = "".join(f" --effects {name}" for name in own_files(item.scene))
     return (
-        f"The improved scene with the inputs of record {item.record!r}.",
+        f"{HEAD} {item.record!r}.",
         f"hdrive-mbs run {FOLDER}/{file} --duration {item.duration!r}{starts}{effects}",
     )
 

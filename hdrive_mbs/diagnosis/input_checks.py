@@ -103,15 +103,17 @@ def _unit_of_law(law: Any, values: tuple[float, ...]) -> str:
     return ""
 
 
-def check_trials(simulator: Simulator, factors: Sequence[Factor]) -> None:
+def check_trials(simulator: Simulator, factors: Sequence[Factor], *, fitted: bool = True) -> None:
     """Hold samples against the nominal model.
+
+    fitted : whether they are fitted: then something has to move in one of them
 
     Raises RecordError for too few samples, records in which nothing moves, a column that stands still while the model
     moves, one that is the factor of a unit away from what the model does, and a record that starts at another speed than the scene.
     """
     for trial in simulator.trials:
         _check_samples(trial)
-    if not any(_moves(trial, column) for trial in simulator.trials for column in trial.columns):
+    if fitted and not any(_moves(trial, column) for trial in simulator.trials for column in trial.columns):
         raise RecordError(
             f"Nothing moves in {', '.join(repr(trial.name) for trial in simulator.trials)}: no column varies by more than {MOVES:g} times"
             " its noise, so no cause can be told from another. Record a motion: speeds of both signs, changing load, a sweep."

@@ -28,7 +28,7 @@ class Located:
 
 
 def located(fine: Simulator, about: Fitted) -> Located:
-    """Places of the gap, looked for from a fitted model, see ``localised_about``.
+    """Places of the gap, looked for from a fitted model, see ``localised_about``, on records that are not held out whole.
 
     Without places, and with the reason as doubt, where they cannot be looked for.
     """
@@ -39,7 +39,8 @@ def located(fine: Simulator, about: Fitted) -> Located:
 
 def _located(fine: Simulator, about: Fitted) -> Located:
     try:
-        localiser = Localiser(fine, about)
+        seen = [trial for trial in fine.trials if not trial.held_out.all()]
+        localiser = Localiser(fine if len(seen) == len(fine.trials) else Simulator(seen, fine.step), about)
         places = localiser.places()
         found = bool(places) and places[0].at != NOWHERE
         return Located(

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.along import along, network_of
+from hdrive_mbs.diagnosis.bench import units_of
 from hdrive_mbs.diagnosis.curves import order_map
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.result import OrderMap
@@ -32,7 +33,7 @@ def order_maps(simulator: Simulator, refit: Fitted, effect: Fitted | None) -> tu
             continue
         sizes = {column: float(np.nanstd(values)) / trial.measured[column].total for column, values in left[0].items()}
         worst = max(sizes, key=lambda column: sizes[column])
-        unit = next(channel.unit for channel in trial.scene.network().channels if channel.name == trial.measured[worst].channel)
+        unit = units_of(trial.scene.network()).get(trial.measured[worst].channel, "")
         after = left[1].get(worst) if len(left) > 1 else None
         made = order_map(trial.name, worst, unit, shaft[0], trial.times, shaft[1], left[0][worst], after)
         if made is not None:

@@ -109,9 +109,19 @@ def read_report_json(path: str | os.PathLike[str], *, verify: bool = True) -> di
 
 
 def _checksum(document: Mapping[str, Any]) -> str:
-    """Of everything but the checksum itself, whatever the order of the keys."""
-    rest = {key: value for key, value in document.items() if key != "sha256"}
+    """Of everything but the checksum itself, whatever the order of the keys and whether whole numbers are written with a point."""
+    rest = {key: _same_numbers(value) for key, value in document.items() if key != "sha256"}
     return hashlib.sha256(json.dumps(rest, sort_keys=True).encode()).hexdigest()
+
+
+def _same_numbers(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _same_numbers(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_same_numbers(item) for item in value]
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return float(value) + 0.0  # no -0.0
+    return value
 
 
 def _in_unit(gap: Any) -> dict[str, Any]:

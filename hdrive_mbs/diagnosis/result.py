@@ -238,6 +238,8 @@ class Driven:
     """The improved scene as one record drives it: ``hm.simulate(item.scene, item.duration, initial=item.initial)``.
 
     duration : of the record [s];  initial : values at its start by channel, SI, zeros left out
+
+    A spin that the diagnosis took from a measured angle is left to the scene's own drive.
     """
 
     record: str
@@ -262,7 +264,7 @@ class Diagnosis:
     notes : what else he has to know (fits that did not converge, verification on the engine, ...)
     inputs : columns that drive the scene, and the field each of them was put into
     files : record -> its source and sha256, of records that were read from files
-    settings : step [s], every (samples of which a search compares one), candidates (classes and places), searched (records)
+    settings : step [s], every (samples of which a search compares one), candidates (classes and places), searched and held_out (records)
     forces, loops, order_maps : for pictures: at the located place, most telling record first
     """
 

@@ -82,9 +82,10 @@ class Simulator:
     def _forget(self) -> None:
         self._lines = Lines(self.trials)
         self._kept: list[OrderedDict[object, Values | None]] = [OrderedDict() for _ in self.trials]
+        self._started: tuple[Hypothesis, FloatArray, list[dict[str, float]]] | None = None
 
     def __getstate__(self) -> dict[str, object]:
-        return {name: value for name, value in self.__dict__.items() if name not in ("_lines", "_kept")}
+        return {name: value for name, value in self.__dict__.items() if name not in ("_lines", "_kept", "_started")}
 
     def __setstate__(self, state: dict[str, object]) -> None:
         self.__dict__.update(state)
@@ -138,8 +139,10 @@ class Simulator:
 
     def start_of(self, number: int, hypothesis: Hypothesis, point: FloatArray) -> dict[str, float]:
         """Angles at which a trial starts [rad, m], by coordinate."""
-        start = self._lines.at(hypothesis, [point])[number][0]
-        return {} if start is None else dict(start.angles)
+        if self._started is None or self._started[0] is not hypothesis or not np.array_equal(self._started[1], point):
+            found = [starts[0] for starts in self._lines.at(hypothesis, [point])]
+            self._started = hypothesis, point.copy(), [{} if start is None else start.angles for start in found]
+        return dict(self._started[2][number])
 
     def _simulated(self, number: int, starts: Sequence[Start | None]) -> list[Values | None]:
         """Values of the columns of a trial at its samples, by point; equal lines are run once."""

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.along import along, network_of
+from hdrive_mbs.diagnosis.bench import units_of
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.result import Trace
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -24,7 +25,7 @@ def traces(simulator: Simulator, nominal: Fitted, refit: Fitted, effect: Fitted)
     found = []
     for number, trial in enumerate(simulator.trials):
         network = trial.scene.network()
-        units = {channel.name: channel.unit for channel in network.channels}
+        units = units_of(network)
         thin = slice(None, None, max(1, -(-trial.samples // POINTS)))
         where = _operating_point(simulator, number, effect)
         for column, values in trial.columns.items():

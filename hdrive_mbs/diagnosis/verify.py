@@ -29,7 +29,7 @@ def engine_difference(simulator: Simulator, fitted: Fitted) -> float:
     On the beginning of the shortest record.  Raises AnalysisError, SimulationError or ParameterError where the engine cannot run the
     scene.
     """
-    number = min(range(len(simulator.trials)), key=lambda k: simulator.trials[k].samples)
+    number = _shortest(simulator)
     trial = simulator.trials[number]
     scene = fitted.hypothesis.scene(trial.scene, fitted.z)
     own = simulator.columns(fitted.hypothesis, fitted.z)[number]
@@ -47,6 +47,10 @@ def engine_difference(simulator: Simulator, fitted: Fitted) -> float:
     return worst
 
 
+def _shortest(simulator: Simulator) -> int:
+    return min(range(len(simulator.trials)), key=lambda k: simulator.trials[k].samples)
+
+
 def verified(simulator: Simulator, fits: Sequence[Fitted]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Of each fit, the answer first, how far the engine is from its compiled run: notes, and warnings where that is too far."""
     notes: list[str] = []
@@ -59,6 +63,13 @@ def verified(simulator: Simulator, fits: Sequence[Fitted]) -> tuple[tuple[str, .
             notes.append(f"Not verified on the engine, {label}: {error}")
             continue
         agrees = difference < AGREES
+        trial = simulator.trials[_shortest(simulator)]
+        if trial.motions and not agrees:
+            held = ", ".join(trial.motions)
+            notes.append(
+                f"Not verified on the engine, {label}: in {trial.name!r} {held} follows a measured angle, which the engine does not."
+            )
+            continue
         text = (
             f"Search and multibody engine {'agree' if agrees else 'DIFFER'}: rms difference {difference:.2g} of the noise at most, {label}."
         )

@@ -13,6 +13,7 @@ from hdrive_mbs.diagnosis.result import (
     Cause,
     Diagnosis,
     DomainBin,
+    Driven,
     Estimate,
     Gap,
     LatentForce,
@@ -317,9 +318,21 @@ def without_numbers() -> Diagnosis:
 
 
 def without_pictures() -> Diagnosis:
-    """Nothing but the answer."""
+    """Nothing but the answer, and its scene for a record."""
+    driven = Driven(record="run 1", scene=effect().improved, duration=1.5, initial={"load.speed": 0.5})
     return dataclasses.replace(
-        effect(), where=(), gaps=(), parameters=(), domain=(), traces=(), notes=(), forces=(), loops=(), order_maps=(), versions={}
+        effect(),
+        driven=(driven,),
+        where=(),
+        gaps=(),
+        parameters=(),
+        domain=(),
+        traces=(),
+        notes=(),
+        forces=(),
+        loops=(),
+        order_maps=(),
+        versions={},
     )
 
 

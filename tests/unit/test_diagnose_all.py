@@ -99,6 +99,7 @@ def test_every_case_gets_its_report_and_the_table_a_line(bench: Path, tmp_path: 
     for name in ("a", "b"):
         assert read_report_json(out / name / "diagnosis.json")["verdict"] == answer.verdict
         assert load_scene(out / name / "improved.toml") == answer.improved
+        assert load_scene(out / name / "improved" / "run_1.toml") == answer.driven[0].scene
         assert "Diagnosis of" in (out / name / "diagnosis.html").read_text("utf-8")
     assert {item.name for item in out.iterdir()} == {"a", "b", "jobs", "diagnoses.csv"}  # and no work left
     assert (out / "diagnoses.csv").read_text().splitlines()[1].startswith("a,")

@@ -20,8 +20,9 @@ from click.testing import Result
 from typer.testing import CliRunner
 
 import hdrive_mbs as hm
+from hdrive_mbs.cli.diagnose import tried
 from hdrive_mbs.cli.main import app, main
-from hdrive_mbs.cli.python_file import own_effects, own_types
+from hdrive_mbs.cli.python_file import own_types
 from hdrive_mbs.cli.stages import plain_lines, stage_bars
 from hdrive_mbs.diagnosis import diagnose as search
 from hdrive_mbs.diagnosis.bench import Bench
@@ -29,6 +30,7 @@ from hdrive_mbs.diagnosis.candidates import known_effects
 from hdrive_mbs.diagnosis.report_json import read_report_json
 from hdrive_mbs.diagnosis.report_text import report_text
 from hdrive_mbs.diagnosis.result import Diagnosis
+from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import FileFormatError, RecordError
 from hdrive_mbs.scene_file import load_scene, save_scene
 from models import drive_bench
@@ -134,8 +136,9 @@ def test_report_is_printed_and_everything_is_written(asked: list[dict[str, Any]]
     assert (out / "diagnosis.txt").read_text("utf-8") == expected
     assert read_report_json(tmp_path / "d.json") == read_report_json(out / "diagnosis.json")
     assert load_scene(out / "improved.toml") == answer.improved
+    assert load_scene(out / "improved" / "run_1.toml") == answer.driven[0].scene
     assert "Diagnosis of" in (out / "diagnosis.html").read_text("utf-8")
-    names = {"diagnosis.txt", "diagnosis.json", "diagnosis.html", "diagnosis.png", "diagnosis.svg", "improved.toml"}
+    names = {"diagnosis.txt", "diagnosis.json", "diagnosis.html", "diagnosis.png", "diagnosis.svg", "improved.toml", "improved"}
     assert {item.name for item in out.iterdir()} == names  # and no work left
     assert isinstance(asked[0]["bench"], Bench)
     assert asked[0]["workers"] == 2
@@ -146,7 +149,7 @@ def test_the_improved_scene_says_whose_inputs_it_holds_and_runs_with_the_file_of
     asked: list[dict[str, Any]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     own = written(tmp_path, SEAL_DRAG, "seal")
-    kind = own_effects(Path(own))[0]
+    [kind] = (item for item in own_types(Path(own)) if issubclass(item, Effect))
     improved = drive_bench.build().with_effect(kind(scale=0.05), at="motor", name="seal_drag")
     answer = dataclasses.replace(SAMPLES["without_pictures"](), improved=improved, inputs={"torque\n[x]": "motor.characteristic"})
     monkeypatch.setattr(search, "diagnose", lambda *given, **options: answer)
@@ -155,7 +158,7 @@ def test_the_improved_scene_says_whose_inputs_it_holds_and_runs_with_the_file_of
     head = [line for line in (out / "improved.toml").read_text("utf-8").splitlines() if line.startswith("#")]
     assert "holds motor.characteristic (driven by column 'torque" in head[0]
     assert "as the bench file has it, not as in a record" in head[0]
-    assert head[1].endswith(f"hdrive-mbs run improved.toml --effects {Path(own).name}")
+    assert head[-1].endswith(f"hdrive-mbs run improved.toml --effects {Path(own).name}")
     assert "as the bench file has it" in " ".join((out / "diagnosis.txt").read_text("utf-8").split())
     assert load_scene(out / "improved.toml", types=[kind]) == improved
     script = "import sys; from hdrive_mbs.cli.main import main; sys.argv[0] = 'hdrive-mbs'; main()"
@@ -224,7 +227,7 @@ def test_only_some_effects_are_tried_by_class_or_family(asked: list[dict[str, An
 
 
 def test_other_processes_can_read_an_effect_of_an_own_file(path: list[str], tmp_path: Path) -> None:
-    kind = own_effects(Path(written(tmp_path, SEAL_DRAG, "sent")))[0]
+    kind = own_types(Path(written(tmp_path, SEAL_DRAG, "sent")))[0]
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
         assert pool.submit(repr, kind(scale=0.3)).result(timeout=PATIENCE) == repr(kind(scale=0.3))
 
@@ -246,29 +249,35 @@ def test_other_processes_can_read_an_effect_of_an_own_file(path: list[str], tmp_
 def test_an_effect_file_that_cannot_be_used_is_named_with_its_line(text: str, words: str, path: list[str], tmp_path: Path) -> None:
     file = written(tmp_path, text, "broken")
     with pytest.raises(FileFormatError) as error:
-        own_effects(Path(file))
+        own_types(Path(file))
     assert str(error.value).startswith(file)
     assert words in str(error.value)
 
 
-def test_a_file_with_a_law_of_ones_own_serves_a_scene_but_not_a_search(path: list[str], tmp_path: Path) -> None:
+def test_a_file_with_a_law_of_ones_own_serves_a_scene(path: list[str], tmp_path: Path) -> None:
     head = "from hdrive_mbs import MotorCharacteristic\n\n\nclass Idle(MotorCharacteristic):\n"
     law = head + "    def torque(self, time, speed):\n        return 0.0\n"
     file = Path(written(tmp_path, law, "law"))
     assert [kind.__name__ for kind in own_types(file)] == ["Idle"]
-    with pytest.raises(FileFormatError, match="defines no effect"):
-        own_effects(file)
-    with pytest.raises(FileFormatError, match="no effect, law or part"):
-        own_types(Path(written(tmp_path, "x = 1\n", "nothing")))
+    assert tried([file]) == known_effects()
+
+
+def test_a_scene_file_that_names_own_classes_is_diagnosed_with_their_files(asked: list[dict[str, Any]], tmp_path: Path) -> None:
+    own = written(tmp_path, SEAL_DRAG, "seal")
+    [kind] = (item for item in own_types(Path(own)) if issubclass(item, Effect))
+    scene = save_scene(drive_bench.build().with_effect(kind(scale=0.05), at="motor", name="seal_drag"), tmp_path / "improved.toml")
+    words = (str(scene), "--records", record(tmp_path, "a.csv"), "--out", str(tmp_path / "out"))
+    assert invoke(*words, "--effects", own).exit_code == 0
+    assert asked[-1]["bench"].effects[0].name == "seal_drag"
 
 
 def test_an_effect_file_must_not_have_the_name_of_another_module(path: list[str], tmp_path: Path) -> None:
     (tmp_path / "json.py").write_text("x = 1\n")
     with pytest.raises(FileFormatError, match=r"another module named 'json'.*rename the file"):
-        own_effects(tmp_path / "json.py")
+        own_types(tmp_path / "json.py")
     (tmp_path / "my-effect.py").write_text("x = 1\n")
     with pytest.raises(FileFormatError, match="rename it to letters, digits"):
-        own_effects(tmp_path / "my-effect.py")
+        own_types(tmp_path / "my-effect.py")
 
 
 Words = Callable[[Path], tuple[str, ...]]

@@ -212,6 +212,8 @@ def test_a_whole_record_is_held_out_and_the_gap_measured_on_it_alone() -> None:
 def test_what_is_held_out_must_be_there_and_leave_something() -> None:
     with pytest.raises(hm.PlaceError, match="sweep"):
         diagnose(bench(), quiet(), candidates=(SensorGain,), held_out=("sweep",))
+    with pytest.raises(hm.PlaceError, match="sweep"):
+        diagnose(bench(), quiet(), candidates=(SensorGain,), held_out="sweep")
     with pytest.raises(hm.ParameterError, match="All records are held out"):
         diagnose(bench(), quiet(), candidates=(SensorGain,), held_out=tuple(INPUTS))
 

@@ -98,7 +98,7 @@ def test_the_command_at_the_head_of_a_records_scene_runs_it(tmp_path: Path, monk
     driven = driven_scenes(simulator, fitted, ["load_cycle"])
     answer = dataclasses.replace(SAMPLES["without_pictures"](), improved=driven[0].scene, driven=driven)
     write_improved(answer, tmp_path)
-    assert "improved/load_cycle.toml" in " ".join(improved_words(answer))
+    assert "improved/RECORD.toml" in " ".join(improved_words(answer))
     file = tmp_path / "improved" / "load_cycle.toml"
     assert load_scene(file) == driven[0].scene
     head = [line for line in file.read_text("utf-8").splitlines() if line.startswith("#")]
@@ -112,6 +112,21 @@ def test_the_command_at_the_head_of_a_records_scene_runs_it(tmp_path: Path, monk
     assert run.at("motor.speed", np.zeros(1))[0] == 40.0
     own = simulator.columns(fitted.hypothesis, fitted.z)[0]["load_angle"]
     assert abs(run.at("load_encoder", np.array([run.times[-1]]))[0] - own[-1]) < 1e-6
+
+
+def test_scenes_of_an_earlier_diagnosis_go_and_other_files_stay(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """And a law that is a Python function keeps the rest from being written no more."""
+    simulator, fitted = moving()
+    first, second = (driven_scenes(simulator, fitted, [name])[0] for name in ("load_cycle", "load"))
+    plain = SAMPLES["without_pictures"]()
+    (tmp_path / "improved").mkdir()
+    (tmp_path / "improved" / "mine.toml").write_text("x = 1\n")
+    write_improved(dataclasses.replace(plain, driven=(first,)), tmp_path)
+    assert {path.name for path in (tmp_path / "improved").iterdir()} == {"mine.toml", "load_cycle.toml"}
+    function = dataclasses.replace(second, record="third", scene=second.scene.replacing({"load.torque": lambda time: 0.0 * time}))
+    write_improved(dataclasses.replace(plain, driven=(second, function)), tmp_path)
+    assert {path.name for path in (tmp_path / "improved").iterdir()} == {"mine.toml", "load.toml"}
+    assert "third.toml was not written: load.torque.function is a Python" in capsys.readouterr().err
 
 
 def test_the_files_of_all_own_classes_of_a_scene_are_named() -> None:

@@ -104,6 +104,21 @@ def test_a_line_within_its_tolerance_is_blamed_on_nothing() -> None:
     assert found.gap.nominal.value > 3.0
 
 
+def test_an_accelerometer_has_its_unit_in_the_pictures() -> None:
+    """Its channel is a rate, which the network does not list."""
+    plant = scene().with_effect(RotorUnbalance(unbalance=3e-4, phase=1.2), at="disc")
+    run = hm.simulate(plant, DURATION, solver=hm.Trapezoidal(step=5e-5, newton_tolerance=1e-8), progress=False)
+    times = np.asarray(STEP * np.arange(round(DURATION / STEP) + 1), float)
+    speed = run.at("disc.x_rate", times)
+    felt = Measurement(
+        name="felt", unit="m/s^2", values=np.gradient(speed, STEP) + 0.01 * np.random.default_rng(2).standard_normal(len(times))
+    )
+    known = dataclasses.replace(bench(), measured={"felt": hm.Measured(channel="disc.x_acceleration", noise=0.01)})
+    found = diagnose(known, Record(name="run_up", times=times, channels={"felt": felt}), candidates=RotorUnbalance)
+    assert {item.unit for item in (*found.order_maps, *found.traces, *found.gaps[1:])} == {"m/s^2"}
+    assert found.order_maps
+
+
 def test_a_wrong_gain_of_a_probe_is_a_faulty_sensor_and_the_other_probe_is_named_as_tied() -> None:
     """The whirl is round: 5 % too much in x is 5 % too little in y of a larger eccentricity, which is known to 10 %."""
     found = found_in((ProbeGain(error=0.05), "probe_x"))

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.components.drive_torque import DriveTorque
+from hdrive_mbs.components.rotor import Rotor
 from hdrive_mbs.diagnosis.locate.linear import Linear, linearised
 from hdrive_mbs.diagnosis.locate.motion import Motion
 from hdrive_mbs.diagnosis.locate.observer import Observer, observer
@@ -57,7 +58,7 @@ def line(motion: Motion, at: str | None = None, like: Observer | None = None) ->
     if not network.is_lateral:
         given = sources(network)
     elif _lateral(trial, network):
-        given, sensors = lateral_sources(network, _coupled(network, driven)), _pairs(trial, network)
+        given, sensors = lateral_sources(network, _coupled(trial, driven)), _pairs(trial, network)
     else:
         given = turning_sources(network, driven)
     if network.is_lateral and at is not None:
@@ -103,10 +104,9 @@ def _driven(trial: Trial, network: Network) -> dict[str, str]:
     }
 
 
-def _coupled(network: Network, driven: Mapping[str, str]) -> dict[str, str]:
+def _coupled(trial: Trial, driven: Mapping[str, str]) -> dict[str, str]:
     """Those that a coupling joins to their drive: what shakes a rotor that is driven itself is its own."""
-    rotors = {rotor.coordinates[5] for rotor in network.rotors}
-    return {station: part for station, part in driven.items() if station not in rotors}
+    return {station: part for station, part in driven.items() if not isinstance(trial.scene.parts.get(station), Rotor)}
 
 
 def _reads(trial: Trial, network: Network, column: str) -> str:

@@ -135,7 +135,7 @@ def observer(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray, noise: 
         moved = free @ b[k] * every
         shown = np.abs(_steady(free, moved, c[k], d[k], every)) / scale[:, None]
         most = np.max(shown, axis=(0, 1))
-        size = np.where(most > HIDDEN * np.max(most), np.sqrt(STRONG) / np.maximum(most, 1e-300), 0.0)
+        size = np.where(most > HIDDEN * np.max(most, initial=0.0), np.sqrt(STRONG) / np.maximum(most, 1e-300), 0.0)
         push, through = moved * size, d[k] * size
         process, cross = push @ push.T, push @ through.T
         direct = through @ through.T + np.diag(scale**2)
