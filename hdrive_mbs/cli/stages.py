@@ -50,15 +50,23 @@ def stage_bars(show: bool | None = None) -> Iterator[StageReport | None]:
 
 
 def plain_lines(every: float = SELDOM, clock: Callable[[], float] = time.monotonic) -> StageReport:
-    """A report that writes a line to stderr whenever the last one is ``every`` seconds ago, and none for work that is done before."""
+    """A report that writes a line to stderr whenever the last one is ``every`` seconds ago, and none for work that is done before.
+
+    The time left is that of the stage, if the rest of it goes on as fast as it has since it began.
+    """
     started = last = clock()
+    current, begun, before = "", started, 0
 
     def report(stage: str, done: int, total: int) -> None:
-        nonlocal last
+        nonlocal last, current, begun, before
         now = clock()
+        if stage != current:
+            current, begun, before = stage, now, done
         if now - last >= every:
             last = now
             part = f", {min(done, total)} of {total}" if total > 1 else ""
+            if total > done > before:
+                part += f", about {(total - done) * (now - begun) / (done - before):.0f} s left of this"
             print(f"{now - started:.0f} s: {stage}{part}", file=sys.stderr, flush=True)
 
     return report

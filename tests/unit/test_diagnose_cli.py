@@ -370,7 +370,7 @@ def test_without_a_terminal_a_plain_line_comes_every_half_minute(capsys: pytest.
     report = plain_lines(clock=lambda: next(times))
     for stage, done, total in (("first", 1, 4), ("first", 2, 4), ("first", 3, 4), ("second", 0, 1), ("third", 0, 1)):
         report(stage, done, total)
-    assert capsys.readouterr().err == "31 s: first, 3 of 4\n75 s: third\n"
+    assert capsys.readouterr().err == "31 s: first, 3 of 4, about 15 s left of this\n75 s: third\n"
     with stage_bars() as shown:  # stderr is no terminal here
         assert shown is not None
         shown("first", 1, 4)
