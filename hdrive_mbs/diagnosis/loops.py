@@ -26,12 +26,12 @@ def loops(
     """One for each trial, that in which the models differ most first; none where no place is a connection.
 
     effect : with the claimed cause, None where none is claimed
-    places : where the gap may sit, those that are claimed first: of those that are connections the first with an unknown torque
-        is taken, else the first
+    places : where causes are claimed.  A connection with an unknown torque comes first; of a rotor line, whose sections bend, no other
     forces : unknown torques of the refitted model
     """
-    known = {force.at for force in forces if force.way == TORSION}
-    for at in sorted(dict.fromkeys(places), key=lambda place: place not in known):
+    known = dict.fromkeys(force.at for force in forces if force.way == TORSION)
+    bending = any(trial.scene.network().is_lateral for trial in simulator.trials)
+    for at in dict.fromkeys([*(place for place in places if place in known), *known, *(() if bending else places)]):
         found = [loop for number in range(len(simulator.trials)) for loop in _loop(simulator, number, at, refit, effect, forces)]
         if found:
             return tuple(loop for _, loop in sorted(found, key=lambda item: -item[0]))

@@ -25,6 +25,6 @@ def pictures_of(evidence: Evidence, best: Fitted, places: Sequence[str]) -> dict
         "traces": traces(fine, evidence.nominal, null, best),
         "domain": domain_map(fine, null, best),
         "forces": tuple(pictured(force) for force in located.forces),
-        "loops": loops(fine, null, after, [*places, *(place.at for place in located.places[:1])], located.forces),
+        "loops": loops(fine, null, after, places, located.forces),
         "order_maps": order_maps(fine, null, after),
     }

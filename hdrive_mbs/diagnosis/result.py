@@ -169,7 +169,8 @@ class LatentForce:
 
     at, way : place and direction;  record : its name;  unit : of the force, N m or N, or of the sensor's reading
     times : s;  force : its smoothed estimate
-    angle, speed : of the place [rad, rad/s]; of a connection how far its ends are turned against each other
+    angle, speed : of the place [rad, rad/s]; of a connection how far its ends are turned against each other, of a force across an axis
+        those of the shaft
     torque : through a connection in the model [N m];  twist : of a connection [rad] where angle is that of a body
     spread : standard deviation of the estimate;  each empty or nan where there is none
     """

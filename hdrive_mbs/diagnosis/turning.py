@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.diagnosis.locate.motion import Motion
 from hdrive_mbs.network.network import Network
+
+if TYPE_CHECKING:  # which itself imports this
+    from hdrive_mbs.diagnosis.locate.motion import Motion
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -93,6 +93,13 @@ def test_the_place_of_its_force_is_the_disc_or_what_turns_with_it_by_symmetry() 
     disc = next(item for item in places if item.at == "disc")
     assert places[0].probability - disc.probability < 0.05
     assert {force.way for force in unbalanced().forces} == {"x", "y"}
+    for force in unbalanced().forces:  # an unbalance turns with the shaft: once per turn, as large as speed squared
+        fast = force.speed > 150.0
+        assert 250.0 < force.speed.max() < 310.0
+        once = np.exp(-1j * force.angle[fast])
+        share = abs(np.mean(force.force[fast] * once)) / np.sqrt(np.mean(force.force[fast] ** 2))
+        assert share > 0.5  # of sqrt(1/2)
+    assert unbalanced().loops == ()  # torque over twist says nothing of a force across the axis
 
 
 def test_a_line_within_its_tolerance_is_blamed_on_nothing() -> None:

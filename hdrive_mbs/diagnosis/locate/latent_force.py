@@ -11,9 +11,13 @@ from hdrive_mbs.diagnosis.locate.motion import Motion
 from hdrive_mbs.diagnosis.locate.response import Response
 from hdrive_mbs.diagnosis.locate.sources import Source
 from hdrive_mbs.diagnosis.locate.spectra import Spectra, joined
+from hdrive_mbs.diagnosis.turning import reference_shaft
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+
+ACROSS = ("x", "y", "psi", "theta")
+"""Ways of forces and couples across an axis."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -23,7 +27,8 @@ class LatentForce:
     at, way : place and direction;  record : name of the trial;  unit : of the force
     times : s;  force : generalized force that the model lacks, or reading minus model for a sensor
     angle, speed : of the place, summed along the force: those of a body, or how far the ends of a connection are turned against
-        each other, in the sense in which the force does work;  torque : of the connection in the model, nan for other places
+        each other, in the sense in which the force does work; of a force across an axis those of the shaft
+    torque : of the connection in the model, nan for other places
     """
 
     at: str
@@ -83,6 +88,9 @@ def latent_force(
         moved = [
             sum((f * motion.values[f"{kind}:{n}"] for n, f in factors.items()), np.zeros(trial.samples)) for kind in ("angle", "speed")
         ]
+        if way in ACROSS:
+            speed, angle = reference_shaft(motion)
+            moved = [angle, speed]
         if not factors:
             moved = [motion.reading(at) if at in known else motion.columns[way if source.columns else at], nothing]
         torque = motion.reading(f"{at}.torque") if way == "torsion" and f"{at}.torque" in known else nothing
