@@ -28,6 +28,9 @@ class Solved:
     raw: Mapping[str, Any] = field(default_factory=dict)
 
 
+KIB = 1024
+"""Bytes in the unit of ru_maxrss on Linux."""
+
 Method = Callable[..., Solved]
 """(bench, folder of a case) -> answer; a method may ask for more, by name: raw, truths.  A case has the name of its folder."""
 
@@ -44,17 +47,28 @@ def records_of(folder: Path) -> list[Record]:
     return [read_record(path) for path in sorted(folder.glob("*.parquet"))]
 
 
-def full(bench: str, folder: Path) -> Solved:
+def memory_at_most(workers: int) -> int:
+    """Bytes that this process and its workers have held at once, at most: each as if all had been as large as the largest ever was."""
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return 0
+    largest = [resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return KIB * (largest[0] + (workers * largest[1] if workers > 1 else 0))
+
+
+def full(bench: str, folder: Path, workers: int = 1) -> Solved:
     """The diagnosis as it is delivered, without pictures."""
     known, kept = bench_of(bench), []
     start = time.process_time()
-    diagnosis = diagnose(known, records_of(folder), workers=1, pictures=False, watch=kept.append)
+    diagnosis = diagnose(known, records_of(folder), workers=workers, pictures=False, watch=kept.append)
     evidence: Evidence = kept[0]
     raw = {
         "case": folder.name,
         "bench": bench,
         "seconds": diagnosis.seconds,
         "processor_seconds": time.process_time() - start,
+        "memory_at_most": memory_at_most(workers),
         **raw_of(evidence, known.groups),
         "where": {place.at: place.probability for place in diagnosis.where},
         "places": places_of(diagnosis),

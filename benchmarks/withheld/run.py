@@ -41,15 +41,19 @@ RETRIES = 1
 class Job:
     """Answers one case by a method; its point holds the folder of the case.
 
-    more : what the method asks for besides, (name, path)
+    more : what the method asks for besides, (name, path);  each : processes for the diagnosis of one case
     """
 
     bench: str
     method: str
     more: tuple[tuple[str, str], ...] = ()
+    each: int = 1
 
     def __call__(self, point: Mapping[str, Any]) -> dict[str, str]:
-        solved = method(self.method)(self.bench, Path(point["folder"]), **{name: Path(path) for name, path in self.more})
+        more: dict[str, Any] = {name: Path(path) for name, path in self.more}
+        if self.each > 1:
+            more["workers"] = self.each
+        solved = method(self.method)(self.bench, Path(point["folder"]), **more)
         return {"answer": _text(solved.answer), "raw": _text(solved.raw)}
 
 
@@ -61,6 +65,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, required=True, help="answers.json, written as answers come")
     parser.add_argument("--only", default="", help="names of cases, with commas between them")
     parser.add_argument("--workers", type=int, default=1, help="cases side by side, a process each (default 1); 0: in this process")
+    parser.add_argument("--each", type=int, default=1, help="processes for one case (default 1), with --workers 0 and --method full")
     parser.add_argument(
         "--scheduler",
         metavar="ADDRESS",
@@ -80,8 +85,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(str(error))
     if options.workers < 0:
         parser.error("--workers must be at least 0")
+    if options.each < 1 or (options.each > 1 and (options.workers or options.scheduler or options.method != "full")):
+        parser.error("--each is at least 1, and more than that goes with --workers 0 and --method full alone")
+    more = tuple((name, str(path)) for name in ("raw", "truths") if (path := getattr(options, name)))
     return answer_cases(
-        Job(options.bench, options.method, tuple((name, str(path)) for name in ("raw", "truths") if (path := getattr(options, name)))),
+        Job(options.bench, options.method, more, options.each),
         cases,
         options.out,
         workers=options.workers,
@@ -168,7 +176,8 @@ def write_answers(path: Path, answers: Mapping[str, Mapping[str, Any]]) -> Path:
 def about(job: Job) -> dict[str, Any]:
     """Method, constants of the verdict, commit and machine."""
     constants = {name: value for name, value in vars(verdict).items() if name.isupper() and isinstance(value, float)}
-    return {"bench": job.bench, "method": job.method, "commit": _commit(), "verdict": constants, "machine": machine()}
+    found = {"bench": job.bench, "method": job.method, "processes_each": job.each}
+    return {**found, "commit": _commit(), "verdict": constants, "machine": machine()}
 
 
 def _commit() -> str:

@@ -10,10 +10,13 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.bounded import bounded_step
 from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian
 from hdrive_mbs.diagnosis.simulator import Simulator
+
+FloatArray = npt.NDArray[np.float64]
 
 PARTS = (1.0, 0.4)
 """Of the proposed step from which new fits start."""
@@ -21,13 +24,18 @@ DOWN = 5
 """Steps of a new fit before it is judged."""
 WORTH = 1.0
 """Gain of the cost (natural logarithm of the likelihood) that makes a hop count."""
+PROMISED = 0.5
+"""Gain that the bowl has to promise for a hop to be tried.  Of 23 hops in our own open cases (drive sets 4 and 5, rotor set 3) the 12 that
+promised less gained 0.15 at most, and the 11 others 0.12 to 42, which is 0.16 to 1.1 times what was promised."""
 
 
 def settled(simulator: Simulator, fitted: Fitted, hops: int = 3) -> Fitted:
     """The fit, or a better one that lies within some hops."""
     best = fitted
     for _ in range(hops if len(fitted.z) else 0):
-        proposed = _bowl(simulator, best)
+        proposed, promised = _bowl(simulator, best)
+        if promised < PROMISED:
+            break
         tried = [best]
         for part in PARTS:
             start = best.hypothesis.clipped(best.z + part * proposed)
@@ -44,20 +52,22 @@ def settled(simulator: Simulator, fitted: Fitted, hops: int = 3) -> Fitted:
     return best
 
 
-def _bowl(simulator: Simulator, fitted: Fitted) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """The Gauss-Newton step by long differences."""
+def _bowl(simulator: Simulator, fitted: Fitted) -> tuple[FloatArray, float]:
+    """The Gauss-Newton step by long differences, and by how much it lowers the cost of the bowl."""
     hypothesis, z = fitted.hypothesis, fitted.z
     mask = simulator.fit
     part = fitted.residuals[mask]
     weights = simulator.blocks.weights(part)
     metric = fitted.curvature + np.diag(hypothesis.curvatures(z))
-    move = np.zeros_like(z)
+    move, promised = np.zeros_like(z), 0.0
     for _ in range(2):  # the metric of the first differences is that of the wave
         columns = jacobian(simulator, hypothesis, z, fitted.residuals, metric)
         weighted = columns * weights[:, None]
         curvature = weighted.T @ columns
         metric = curvature + np.diag(hypothesis.curvatures(z))
         normal = curvature + np.diag(hypothesis.precisions)
-        move = bounded_step(hypothesis, z, normal, weighted.T @ part + hypothesis.precisions * z)
-    reaches = hypothesis.reaches(z)
-    return np.asarray(np.clip(move, -reaches, reaches))
+        slope = weighted.T @ part + hypothesis.precisions * z
+        reaches = hypothesis.reaches(z)
+        move = np.clip(bounded_step(hypothesis, z, normal, slope), -reaches, reaches)
+        promised = -float(slope @ move) - 0.5 * float(move @ normal @ move)
+    return np.asarray(move), promised

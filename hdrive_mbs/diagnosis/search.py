@@ -157,8 +157,10 @@ class _Work:
         chosen = [suspect.label for suspect, _ in spread[: worth(before, [look.cost for _, look in spread], self.how.brief)]]
         closer = [pair for pair in first if pair[0].label in chosen]
         if self.how.laws > 1:
-            laws = [suspect for suspect in everything if suspect.label in chosen]
-            closer = self._looked(screen, laws, [item.all for item in laws], "looking closer")
+            whole = [pair for pair in closer if pair[0].is_looked_at_whole]
+            known = [suspect for suspect, _ in whole]
+            laws = [item for item in everything if item.label in chosen and item not in known]
+            closer = by_cost([*whole, *self._looked(screen, laws, [item.all for item in laws], "looking closer")])
         best = picked(closer, laws=self.how.laws)[: self.how.picked]
         tasks = [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE)) for suspect, look in best]
         brief = cheapest(self.fitted(tasks, "a few joint steps"))
@@ -196,8 +198,12 @@ class _Work:
         """Looks at suspects, cheapest misfit first; those that cannot be run are left out."""
         questions = [(some, item.widths) for item, some in zip(asked, starts, strict=True)]
         answers = self.team.map(_look, screen, questions, partial(self.said, words))
-        looks = [(suspect, look) for suspect, look in zip(asked, answers, strict=True) if look is not None]
-        return sorted(looks, key=lambda pair: pair[1].cost)
+        return by_cost([(suspect, look) for suspect, look in zip(asked, answers, strict=True) if look is not None])
+
+
+def by_cost(looks: Sequence[tuple[Suspect, Look]]) -> list[tuple[Suspect, Look]]:
+    """Looks, cheapest misfit first."""
+    return sorted(looks, key=lambda pair: pair[1].cost)
 
 
 def _begun(item: Suspect, periods: StandsOut) -> Suspect:

@@ -36,6 +36,20 @@ class Suspect:
         """Whether it is a law with a period to begin at."""
         return self.law != PARAMETER and is_periodic(self.first[0])
 
+    @property
+    def is_looked_at_whole(self) -> bool:
+        """Whether the first look begins at every start already."""
+        return len(self.first) == len(self.all) and all(_begins_alike(a, b) for a, b in zip(self.first, self.all, strict=True))
+
+
+def _begins_alike(a: Hypothesis, b: Hypothesis) -> bool:
+    """Whether two hypotheses of one suspect begin with equal values."""
+    return a is b or _values(a) == _values(b)
+
+
+def _values(hypothesis: Hypothesis) -> list[list[tuple[str, object]]]:
+    return [[(name, value) for name, value, _ in item.effect.fields()] for item in hypothesis.added]
+
 
 def suspects(base: Hypothesis, groups: Mapping[str, Sequence[str]], tried: Sequence[Candidate]) -> list[Suspect]:
     """Parameters that may be off, by group, and effects that may be missing, each added to a base."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import contextlib
 import html
 import io
 import os
@@ -57,8 +58,8 @@ def check_request(path: str | os.PathLike[str], frames: int, seconds: float, dpi
         raise ParameterError(f"{path}: an animation is written as {', '.join(_WRITERS)}; the ending {ending!r} is none of them.")
     if ending == ".mp4" and _encoder() is None:
         raise DependencyError(
-            "An MP4 file needs the program ffmpeg, which is not found. Install it (for instance 'apt install ffmpeg', 'conda install "
-            "ffmpeg'), or write a .gif or .html file."
+            "An MP4 file needs the program ffmpeg, which is not found. Install it (pip install 'hdrive-mbs[video]', 'apt install "
+            "ffmpeg' or 'conda install ffmpeg'), or write a .gif or .html file."
         )
     if not (isinstance(frames, (int, np.integer)) and 2 <= frames <= 5000):
         raise ParameterError(f"frames = {frames!r}: must be a whole number from 2 to 5000.")
@@ -198,7 +199,14 @@ def _mp4(file: BinaryIO, frames: Iterator[Pixels], step: float, description: str
 
 
 def _encoder() -> str | None:
-    return shutil.which(str(matplotlib.rcParams["animation.ffmpeg_path"]))
+    """That of matplotlib's settings, or else the one that the package imageio-ffmpeg brings."""
+    found = shutil.which(str(matplotlib.rcParams["animation.ffmpeg_path"]))
+    if found is None:
+        with contextlib.suppress(ImportError, RuntimeError):  # RuntimeError: it has none for this machine
+            import imageio_ffmpeg
+
+            found = imageio_ffmpeg.get_ffmpeg_exe()
+    return found
 
 
 def _html(file: BinaryIO, frames: Iterator[Pixels], step: float, description: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -26,8 +27,8 @@ from hdrive_mbs.diagnosis.lines import Lines
 from hdrive_mbs.diagnosis.located import Located, located
 from hdrive_mbs.diagnosis.pairs import alone, contenders, moved
 from hdrive_mbs.diagnosis.result import Place
-from hdrive_mbs.diagnosis.screening import Look
-from hdrive_mbs.diagnosis.search import ENOUGH, Search
+from hdrive_mbs.diagnosis.screening import Look, Screen
+from hdrive_mbs.diagnosis.search import ENOUGH, Search, fit_nominal, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, simplest, suspects
 from hdrive_mbs.diagnosis.tasks import FIRST, Found, Task, run_task
@@ -382,6 +383,32 @@ def test_what_a_search_chooses_among_counts_in_the_prior() -> None:
     assert free.log_prior(z) == pytest.approx(
         sum(unknown.log_prior(z[part].tolist()) for unknown, part in zip(free.unknowns, free.slices, strict=True)) - math.log(10.0)
     )
+
+
+def test_a_law_whose_every_start_was_looked_at_is_not_looked_at_again(simulator: Simulator, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And the search finds what it finds where all are looked at twice."""
+    tried = candidates(BENCH.scene, [hm.ViscousDrag, hm.QuadraticDrag, hm.CoulombStribeckFriction, hm.DahlFriction])
+    base = fit_nominal(simulator, factors_of(BENCH))
+    asked: list[tuple[str, int]] = []
+    look = Screen.look
+
+    def counted(screen: Screen, starts: Sequence[Hypothesis]) -> Look | None:
+        asked.append((starts[0].label, len(starts)))
+        return look(screen, starts)
+
+    monkeypatch.setattr(Screen, "look", counted)
+    with Team(1) as team:
+        found = search(team, simulator, base, {}, tried)
+        once, asked = asked, []
+        monkeypatch.setattr(Suspect, "is_looked_at_whole", False)
+        again = search(team, simulator, base, {}, tried)
+    assert len(set(once)) == len(once)
+    assert {label for label, _ in once} == {label for label, _ in asked}
+    assert len(asked) > len(once)
+    assert [(item.suspect.label, item.suspect.law) for item in found.found] == [
+        (item.suspect.label, item.suspect.law) for item in again.found
+    ]
+    assert [item.log_odds for item in found.found] == pytest.approx([item.log_odds for item in again.found])
 
 
 def left_with(simulator: Simulator, *, cost: float, chi_fit: float) -> Fitted:

@@ -1,0 +1,75 @@
+"""Hops out of small hollows, on a misfit that is known in closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from hdrive_mbs.diagnosis import hops
+from hdrive_mbs.diagnosis.fit import Fitted, fit
+from hdrive_mbs.diagnosis.hops import WORTH, settled
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.robust import Blocks
+from hdrive_mbs.diagnosis.unknowns import Factor
+
+FloatArray = npt.NDArray[np.float64]
+
+SAMPLES = 4000
+SLOPE, CENTRE = 0.5, 0.4
+"""Of the bowl: 4000 samples that change by 0.5 a standard deviation each give it a width of 1/sqrt(4000 * 0.5^2) = 0.03."""
+
+
+class Waved:
+    """Residuals s (z - c) + w sin(k z) in every sample, and noise: hollows wherever k w is larger than s."""
+
+    def __init__(self, wave: float, number: float) -> None:
+        self.wave, self.number = wave, number
+        self.fit = np.ones(SAMPLES, bool)
+        self.fit[::4] = False
+        self.held_out = ~self.fit
+        self.blocks = Blocks(np.zeros(int(self.fit.sum()), int))
+        noise = np.random.default_rng(3).normal(size=SAMPLES)
+        self.noise = noise - noise[self.fit].mean()  # so that the bottom of the bowl is where it is said to be
+        self.runs = 0
+
+    def residuals(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[FloatArray | None]:
+        self.runs += len(points)
+        return [self.noise + SLOPE * (z[0] - CENTRE) + self.wave * np.sin(self.number * z[0]) for z in points]
+
+
+def begun(waved: Waved, at: float) -> Fitted:
+    hypothesis = Hypothesis((Factor(path="shaft.stiffness", name="stiffness", nominal={"shaft.stiffness": 1.0}, sigma=0.01),))
+    return fit(waved, hypothesis, np.array([at]), share=1e-7)  # type: ignore[arg-type]
+
+
+def test_a_hop_leads_out_of_a_hollow_and_down_the_bowl() -> None:
+    """Hollows 2 pi/200 = 0.03 apart, one width of the bowl: a fit from 0.8 stops beside where it begins."""
+    waved = Waved(0.05, 200.0)
+    stuck = begun(waved, 0.8)
+    out = settled(waved, stuck)  # type: ignore[arg-type]
+    assert abs(stuck.z[0] - 0.8) < 2.0 * np.pi / 200.0
+    assert abs(out.z[0] - CENTRE) < 0.5 * abs(stuck.z[0] - CENTRE)
+    assert out.cost < stuck.cost - WORTH
+
+
+def test_a_fit_at_the_bottom_is_left_there_and_no_fit_starts_from_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    waved = Waved(0.0, 1.0)
+    there = begun(waved, 0.8)
+    before = waved.runs
+    monkeypatch.setattr(hops, "fit", lambda *_, **__: pytest.fail("nothing was promised"))
+    assert settled(waved, there) is there  # type: ignore[arg-type]
+    assert waved.runs == before + 2  # the differences of the bowl, twice
+
+
+def test_what_a_straight_bowl_promises_is_what_a_hop_gains() -> None:
+    """Along a quadratic misfit from one width s beside its bottom: half of (z/s)^2 = 1/2."""
+    waved = Waved(0.0, 1.0)
+    there = begun(waved, 0.8)
+    width = float(np.sqrt(there.covariance[0, 0]))
+    moved = there.z + 3.0 * width
+    aside = Fitted(**{**vars(there), "z": moved, "residuals": waved.residuals(there.hypothesis, [moved])[0]})
+    _, promised = hops._bowl(waved, aside)  # type: ignore[arg-type]
+    assert promised == pytest.approx(0.5 * 3.0**2, rel=0.02)
