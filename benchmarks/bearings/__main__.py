@@ -7,6 +7,7 @@ from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 
+from benchmarks.campaign import add_where, where
 from benchmarks.command import Found, command, run
 
 HERE = Path(__file__).resolve().parent
@@ -16,7 +17,7 @@ def measure(options: Namespace) -> Found:
     from benchmarks.bearings.report import report
     from benchmarks.bearings.study import study
 
-    found, numbers, claims, aims, drawn = study(quick=options.quick, repeats=options.repeats)
+    found, numbers, claims, aims, drawn = study(quick=options.quick, repeats=options.repeats, where=where(options))
     return Found(numbers=numbers, text=report(found, numbers, claims, aims), figures=drawn)
 
 
@@ -28,6 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         repeats=5,
         repeated="repeats of each run that takes less than a second",
     )
+    add_where(parser)
     return run(parser, arguments, measure, HERE)
 
 

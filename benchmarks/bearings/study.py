@@ -19,6 +19,7 @@ from benchmarks.bearings.pictures import pictures
 from benchmarks.bearings.precision import measure
 from benchmarks.bearings.steady import Steady, against, steady
 from benchmarks.bearings.sweep import QUICK, WHOLE, damping_places, maps, work
+from benchmarks.campaign import Where
 from benchmarks.machine import machine
 from benchmarks.stiffness_laws.claim import Claim
 from hdrive_mbs.progress import progress_bar
@@ -29,9 +30,14 @@ QUICK_DURATION = 1.1
 """Just beyond the passage of the first critical speed [s]."""
 
 
-def study(*, quick: bool, repeats: int) -> tuple[Findings, dict[str, Any], list[Claim], list[Claim], dict[str, Figure]]:
-    """What was found, numbers for results.json, claims, aims, pictures."""
-    facts = machine()
+def study(
+    *, quick: bool, repeats: int, where: Where | None = None
+) -> tuple[Findings, dict[str, Any], list[Claim], list[Claim], dict[str, Figure]]:
+    """What was found, numbers for results.json, claims, aims, pictures.
+
+    where : the maps are worked on; what is timed stays in this process
+    """
+    facts, where = machine(), where or Where()
     duration, cases, grid = (QUICK_DURATION, (M_REF,), QUICK) if quick else (DURATION, CASES, WHOLE)
     runs_share, total = 0.75, 1.0
     speeds = np.linspace(20.0, 1100.0, 541)
@@ -50,7 +56,7 @@ def study(*, quick: bool, repeats: int) -> tuple[Findings, dict[str, Any], list[
                 report(runs_share + (total - runs_share) * done / work(grid))
 
         defaults = {case: {model: as_it_comes(one, duration) for model, one in of.items()} for case, of in runs.items()}
-        swept = {"maps": maps(grid, one_more), "damping": damping_places(grid, one_more)}
+        swept = {"maps": maps(grid, where, one_more), "damping": damping_places(grid, where, one_more)}
         found = Findings(
             duration=duration,
             runs=runs,

@@ -18,6 +18,7 @@ import hdrive_mbs as hm
 from benchmarks.bearings.cases import BEARINGS, FINAL, FULL, IMPROVED, M_REF, M_REF2, MERGED, SIMPLIFIED, Case, with_model
 from benchmarks.bearings.run_up import ROTORS
 from benchmarks.bearings.steady import forward_criticals
+from benchmarks.campaign import Where
 from hdrive_mbs.analysis.unbalance.response_peaks import ResponsePeak
 from hdrive_mbs.analysis.unbalance.unbalance_response import unbalance_response
 
@@ -96,49 +97,58 @@ def deviations(full: hm.Scene, models: Sequence[str]) -> dict[str, dict[str, flo
     return found
 
 
-def maps(grid: Grid, report: Callable[[], None]) -> dict[str, Any]:
+def maps(grid: Grid, where: Where, report: Callable[[], None]) -> dict[str, Any]:
     """Two maps over the shaft diameter: with the bearing's and with the foundation's stiffness changed."""
     found: dict[str, Any] = {"diameters": list(grid.diameters)}
-    for name, stiffness in (("bearing", grid.bearing), ("foundation", grid.foundation)):
+    lists = {"bearing": grid.bearing, "foundation": grid.foundation}
+    points = [{"of": name, "diameter": d, "stiffness": k} for name, values in lists.items() for d in grid.diameters for k in values]
+    rows = iter(where.sweep(at_a_stiffness, points, arrived=lambda point, values: report(), progress=False).values)
+    for name, stiffness in lists.items():
         shape = len(grid.diameters), len(stiffness)
         table = {model: {key: np.full(shape, np.nan) for key in KEYS} for model in CHEAPER}
-        for i, diameter in enumerate(grid.diameters):
-            for j, value in enumerate(stiffness):
-                rows = deviations(changed(M_REF, diameter, **{name: value}), CHEAPER)
-                for model, row in rows.items():
-                    for key, number in row.items():
-                        table[model][key][i, j] = number
-                report()
+        for at in np.ndindex(*shape):
+            for model, row in next(rows).items():
+                for key, number in row.items():
+                    table[model][key][at] = number
         found[name] = {"stiffness": list(stiffness), "models": table}
     return found
 
 
-def damping_places(grid: Grid, report: Callable[[], None]) -> dict[str, Any]:
+def at_a_stiffness(point: Mapping[str, Any]) -> dict[str, Any]:
+    """Deviations of the cheaper models from the full one (``of``: "bearing" or "foundation"; ``diameter`` [m], ``stiffness`` [N/m])."""
+    return deviations(changed(M_REF, point["diameter"], **{point["of"]: point["stiffness"]}), CHEAPER)
+
+
+def damping_places(grid: Grid, where: Where, report: Callable[[], None]) -> dict[str, Any]:
     """Peaks of the simplified and the improved model while damping moves from the foundation into the bearing.
 
     c_b goes from 400 to 9e4 N s/m while c_h goes from 800 to 10 N s/m, with the stiffness of each case.  ``share`` is what
     the bearings' radial damping holds of the damping ratio at the first critical speed w, 1 - (ratio without it)/ratio, and
     ``loss`` is c_b w/k_b.
     """
-    found: dict[str, Any] = {}
-    for case in (M_REF, M_REF2):
-        rows: list[dict[str, Any]] = []
-        for s in grid.shares:
-            values = {"bearing_damping": 400.0 * 225.0**s, "foundation_damping": 800.0 / 80.0**s}
-            full = changed(case, **values)
-            first = forward_criticals(full)[0]
-            top, without = (first_peaks(scene, first)["rotor_1"] for scene in (full, changed(case, **{**values, "bearing_damping": 0.0})))
-            stiffness = float(full.parts["bearing_a"].law.stiffness_xx)  # type: ignore[attr-defined]
-            row: dict[str, Any] = {
-                **values,
-                "share": 1.0 - without.width / top.width,
-                "loss": values["bearing_damping"] * first / stiffness,
-            }
-            row |= deviations(full, (SIMPLIFIED, IMPROVED))
-            rows.append(row)
-            report()
-        found[case.name] = rows
+    points = [{"case": case.name, "moved": s} for case in (M_REF, M_REF2) for s in grid.shares]
+    rows = where.sweep(with_damping_moved, points, arrived=lambda point, values: report(), progress=False).values
+    found: dict[str, Any] = {case.name: [] for case in (M_REF, M_REF2)}
+    for point, row in zip(points, rows, strict=True):
+        if row:
+            found[str(point["case"])].append(dict(row))
     return found
+
+
+def with_damping_moved(point: Mapping[str, Any]) -> dict[str, Any]:
+    """A row of ``damping_places`` (``case``: its name; ``moved``: from 0, all in the foundation, to 1)."""
+    [case] = [item for item in (M_REF, M_REF2) if item.name == point["case"]]
+    values = {"bearing_damping": 400.0 * 225.0 ** point["moved"], "foundation_damping": 800.0 / 80.0 ** point["moved"]}
+    full = changed(case, **values)
+    first = forward_criticals(full)[0]
+    top, without = (first_peaks(scene, first)["rotor_1"] for scene in (full, changed(case, **{**values, "bearing_damping": 0.0})))
+    stiffness = float(full.parts["bearing_a"].law.stiffness_xx)  # type: ignore[attr-defined]
+    row: dict[str, Any] = {
+        **values,
+        "share": 1.0 - without.width / top.width,
+        "loss": values["bearing_damping"] * first / stiffness,
+    }
+    return row | deviations(full, (SIMPLIFIED, IMPROVED))
 
 
 def work(grid: Grid) -> int:

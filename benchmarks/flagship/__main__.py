@@ -7,6 +7,7 @@ from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 
+from benchmarks.campaign import add_where, where
 from benchmarks.command import Found, command, run
 
 HERE = Path(__file__).resolve().parent
@@ -16,7 +17,7 @@ def measure(options: Namespace) -> Found:
     from benchmarks.flagship.report import report
     from benchmarks.flagship.study import study
 
-    numbers = study(quick=options.quick, names=options.cases, laws=options.laws)
+    numbers = study(quick=options.quick, names=options.cases, laws=options.laws, where=where(options))
     return Found(numbers=numbers, text=report(numbers))
 
 
@@ -27,6 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--cases", nargs="*", default=(), metavar="NAME", help="these cases only")
     parser.add_argument("--laws", choices=("one", "all"), default="one", help="one law of each family, as in the demo, or all")
+    add_where(parser)
     return run(parser, arguments, measure, HERE)
 
 

@@ -13,7 +13,7 @@ def report(numbers: Mapping[str, Any]) -> str:
     rows = []
     for case in numbers["cases"]:
         if "error" in case:
-            rows.append([case["case"], case["planted"], f"stopped: {case['error']}", "nothing", "", f"{case['cpu_s']:.0f}"])
+            rows.append([case["case"], case["planted"], f"stopped: {case['error']}", "nothing", "", ""])
             continue
         said = " and ".join(f"{cause['effect']} at {cause['place']} ({cause['law']})" for cause in case["causes"])
         right = [word for word in ("verdict", "effect", "place") if case[f"{word}_right"]]
@@ -40,7 +40,7 @@ def report(numbers: Mapping[str, Any]) -> str:
             "",
             table(head, rows),
             "",
-            f"Seed {numbers['seed']}; record: {', '.join(numbers['records'])}; {tried}; one process."
+            f"Seed {numbers['seed']}; record: {', '.join(numbers['records'])}; {tried}; one process a case."
             " The machine was shared with other work: CPU seconds, which that makes longer too.",
             "",
             facts(numbers["machine"]),

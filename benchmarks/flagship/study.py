@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.campaign import Where
 from benchmarks.flagship.cases import CASES, Planted
 from benchmarks.flagship.plant import drawn
 from benchmarks.flagship.records import write
@@ -19,7 +20,6 @@ from hdrive_mbs.cli.demo import one_law_each
 from hdrive_mbs.diagnosis.diagnose import diagnose
 from hdrive_mbs.diagnosis.result import Diagnosis
 from hdrive_mbs.effects.effect import Effect
-from hdrive_mbs.errors import HdriveError
 from hdrive_mbs.records.reading import read_records
 from models.robot_joint_line import bench
 
@@ -27,15 +27,28 @@ SEED = 7
 RECORDS = ("to_and_fro",)
 
 
-def study(*, quick: bool, names: Sequence[str] = (), laws: str = "one") -> dict[str, Any]:
+def study(*, quick: bool, names: Sequence[str] = (), laws: str = "one", where: Where | None = None) -> dict[str, Any]:
     """Answers to all cases; of ``quick`` only the first.  Each case draws its own specimen and noise.
 
     laws : "one" of each family, as the demo has it, or "all" of the library
     """
-    chosen = [case for case in CASES if not names or case.name in names][: 1 if quick else None]
-    tried = one_law_each() if laws == "one" else None
+    chosen = [case.name for case in CASES if not names or case.name in names][: 1 if quick else None]
     started = machine()
-    return {"machine": started, "seed": SEED, "records": RECORDS, "laws": laws, "cases": [_case(case, tried) for case in chosen]}
+    found = (where or Where()).sweep(diagnosed, [{"case": name, "laws": laws} for name in chosen])
+    failed = {item["parameters"]["case"]: item["error"] for item in found.failures}
+    cases = [_failed(name, failed[name]) if name in failed else dict(values) for name, values in zip(chosen, found.values, strict=True)]
+    return {"machine": started, "seed": SEED, "records": RECORDS, "laws": laws, "cases": cases}
+
+
+def diagnosed(point: Mapping[str, Any]) -> dict[str, Any]:
+    """The answer to one case (``case``: its name; ``laws``: "one" or "all"), with its cost."""
+    [case] = [item for item in CASES if item.name == point["case"]]
+    return _case(case, one_law_each() if point["laws"] == "one" else None)
+
+
+def _failed(name: str, error: str) -> dict[str, Any]:
+    [case] = [item for item in CASES if item.name == name]
+    return {"case": name, "planted": case.said, "right": case.right, "error": error, "cpu_s": None}
 
 
 def _case(case: Planted, tried: Sequence[type[Effect]] | None) -> dict[str, Any]:
@@ -44,10 +57,7 @@ def _case(case: Planted, tried: Sequence[type[Effect]] | None) -> dict[str, Any]
         paths = write(case.joint(drawn(rng)), Path(folder), rng, records=RECORDS)
         records = read_records(paths)
     started = _cpu(), time.perf_counter()
-    try:
-        found = diagnose(bench(), records, candidates=tried, pictures=False)
-    except HdriveError as error:
-        return {"case": case.name, "planted": case.said, "right": case.right, "error": str(error), "cpu_s": _cpu() - started[0]}
+    found = diagnose(bench(), records, candidates=tried, pictures=False)
     cpu, wall = _cpu() - started[0], time.perf_counter() - started[1]
     gap = found.gap
     answer = {

@@ -7,6 +7,7 @@ from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 
+from benchmarks.campaign import add_where, where
 from benchmarks.command import Found, command, run
 
 HERE = Path(__file__).resolve().parent
@@ -17,7 +18,7 @@ def measure(options: Namespace) -> Found:
     from benchmarks.locate.study import study
 
     sets = {bench: folder for bench in ("drive", "rotor") if (folder := getattr(options, bench)) is not None}
-    numbers = study(sets, kept=options.kept, most=1 if options.quick else None)
+    numbers = study(sets, most=1 if options.quick else None, where=where(options))
     return Found(numbers=numbers, text=report(numbers))
 
 
@@ -33,7 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.add_argument(
             f"--{bench}", type=Path, nargs="+", help=f"open sets of the {bench} bench (benchmarks.withheld.make --open); no case twice"
         )
-    parser.add_argument("--kept", type=Path, help="folder for what each case gave; a case that is there is not run again")
+    add_where(parser)
     return run(parser, arguments, measure, HERE)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,8 @@ def report(numbers: Mapping[str, Any]) -> str:
             _cases(rows),
             "",
         ]
+    if numbers.get("failed"):
+        parts += [f"Not located, because the case failed: {', '.join(Path(item['folder']).name for item in numbers['failed'])}.", ""]
     return "\n".join(parts)
 
 

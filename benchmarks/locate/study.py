@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import json
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.campaign import Where
 from benchmarks.locate.judging import judged
 from benchmarks.machine import machine
 from benchmarks.withheld.truths import read_truths
@@ -30,31 +30,32 @@ SHOWN = 4
 """Places that are kept of each case."""
 
 
-def study(sets: Mapping[str, Sequence[Path]], *, kept: Path | None = None, most: int | None = None) -> dict[str, Any]:
-    """All cases of all sets of each bench.
+def study(sets: Mapping[str, Sequence[Path]], *, most: int | None = None, where: Where | None = None) -> dict[str, Any]:
+    """All cases of all sets of each bench; a case that fails is left out, and counted.
 
-    kept : folder for what each case gave;  most : cases of each set
+    most : cases of each set
     """
-    found: dict[str, list[dict[str, Any]]] = {}
-    for name, folders in sets.items():
-        bench = importlib.import_module(f"models.{name}_bench").bench()
-        found[name] = []
-        for folder in folders:
-            cases = {case: truth for case, truth in read_truths(folder).items() if case.startswith(name)}
-            for case, truth in list(cases.items())[:most]:
-                given = _kept(kept, case, lambda n=name, b=bench, f=folder / case: located(n, b, f))
-                found[name].append(judged(name, given, case, truth))
-    return {"machine": machine(), "cases": found}
+    started = machine()
+    truths = {
+        (name, str((folder / case).resolve())): truth
+        for name, folders in sets.items()
+        for folder in folders
+        for case, truth in [item for item in read_truths(folder).items() if item[0].startswith(name)][:most]
+    }
+    points = [{"bench": name, "folder": folder} for name, folder in truths]
+    found = (where or Where()).sweep(places_of, points) if points else None
+    rows: dict[str, list[dict[str, Any]]] = {name: [] for name in sets}
+    for point, values in zip(points, found.values if found else (), strict=True):
+        if values:
+            name, folder = point["bench"], point["folder"]
+            rows[name].append(judged(name, values, Path(folder).name, truths[name, folder]))
+    return {"machine": started, "cases": rows, "failed": [dict(item["parameters"]) for item in (found.failures if found else ())]}
 
 
-def _kept(folder: Path | None, case: str, made: Any) -> dict[str, Any]:
-    if folder is None:
-        return dict(made())
-    file = folder / f"{case}.json"
-    if not file.exists():
-        folder.mkdir(parents=True, exist_ok=True)
-        file.write_text(json.dumps(made(), indent=1), encoding="utf-8")
-    return dict(json.loads(file.read_text(encoding="utf-8")))
+def places_of(point: Mapping[str, Any]) -> dict[str, Any]:
+    """Places of one case (``bench``: drive or rotor; ``folder``: of its records)."""
+    name = point["bench"]
+    return located(name, importlib.import_module(f"models.{name}_bench").bench(), Path(point["folder"]))
 
 
 def located(name: str, bench: Bench, folder: Path) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from typer.testing import CliRunner
 
 import hdrive_mbs as hm
 from hdrive_mbs.campaign import dask_cluster
+from hdrive_mbs.campaign.fingerprint import fingerprint, job_key
 from hdrive_mbs.cli.main import app
 from hdrive_mbs.errors import DependencyError, SimulationError
 from tests.unit import campaign_jobs as jobs
@@ -99,6 +100,50 @@ def test_a_worker_that_is_killed_from_outside_costs_nothing_but_time(cluster: st
     assert len(ran) > 6, "the job of the killed worker was run again"
     assert campaign.attempts.max() >= 2
     assert len(list((tmp_path / "campaign" / "jobs").iterdir())) == 6
+
+
+INTERRUPTED = """
+import signal, sys
+import hdrive_mbs as hm
+from tests.unit.campaign_jobs import logged
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    points = [{"x": x, "log": sys.argv[1], "seconds": 0.1} for x in range(20)]
+    print(hm.sweep(logged, points, executor=sys.argv[3], folder=sys.argv[2]).status)
+"""
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
+def test_a_campaign_on_the_cluster_that_was_interrupted_goes_on_from_what_is_finished(
+    cluster: str, tmp_path: Path, how: signal.Signals
+) -> None:
+    script, log, folder = tmp_path / "script.py", tmp_path / "log", tmp_path / "campaign"
+    script.write_text(INTERRUPTED)
+    command = [sys.executable, str(script), str(log), str(folder), cluster]
+    caller = subprocess.Popen(
+        command, env={**os.environ, "PYTHONPATH": str(ROOT)}, stdout=subprocess.PIPE, text=True, start_new_session=True
+    )
+    end = time.monotonic() + 30.0
+    while len(list(folder.glob("jobs/*.npz"))) < 4 and time.monotonic() < end:
+        time.sleep(0.02)
+    caller.send_signal(how)
+    output, _ = caller.communicate(timeout=20)
+    finished = len(list(folder.glob("jobs/*.npz")))
+    assert 4 <= finished < 20
+    if how == signal.SIGINT:
+        assert output == f"stopped with {finished} of 20 jobs done; the same call with the same folder goes on from there\n"
+    same = [{"x": x, "log": str(log), "seconds": 0.1} for x in range(20)]
+    kept = {x for x in range(20) if (folder / "jobs" / f"{job_key(fingerprint(jobs.logged), same[x])}.npz").exists()}
+    before = log_lines(log)
+    campaign = hm.sweep(jobs.logged, same, executor=cluster, folder=folder)
+    assert campaign.status == "complete"
+    assert campaign.reused == finished == len(kept)
+    assert list(campaign["double"]) == [2.0 * x for x in range(20)]
+    # a job that a worker was at when its caller went may still write down that it ran
+    again = {int(x) for x, _ in log_lines(log)[len(before) :]}
+    assert again >= set(range(20)) - kept
+    assert len(again & kept) <= 2
 
 
 def test_a_job_that_kills_its_workers_is_given_up_and_a_failing_one_reported(cluster: str) -> None:
