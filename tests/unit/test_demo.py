@@ -14,6 +14,7 @@ import pytest
 import hdrive_mbs
 from hdrive_mbs.cli import demo as command
 from hdrive_mbs.errors import DependencyError, FileFormatError
+from tests.browser import DESKTOP, PHONE, layout, needs_browser
 
 ROOT = Path(__file__).parents[2]
 LABEL = json.loads((ROOT / "benchmarks" / "flagship" / "bundled_label.json").read_text("utf-8"))
@@ -63,6 +64,14 @@ class Page(HTMLParser):
     def handle_data(self, data: str) -> None:
         if self._inside in ("h1", "h2"):
             self.headings.append(data)
+
+
+@needs_browser
+@pytest.mark.parametrize("width", [PHONE, DESKTOP])
+def test_page_fits_a_phone_and_a_desktop(made: Path, width: int, tmp_path: Path) -> None:
+    found = layout((made / "demo.html").read_text("utf-8"), width, tmp_path)
+    found.check()
+    assert len(found.pictures) >= 10
 
 
 def test_page_has_every_section_and_fetches_nothing(made: Path, document: dict[str, Any]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from hdrive_mbs.effects.dahl_hysteresis import DahlHysteresis
 from hdrive_mbs.effects.kinematic_error import KinematicError
 from hdrive_mbs.plots import plot
 from hdrive_mbs.plots.report_html import report_html
+from tests.browser import DESKTOP, PHONE, layout, needs_browser
 from tests.unit.diagnosis_cases import INPUTS, bench, quiet, records
 
 ORDER = 2.0
@@ -65,6 +67,14 @@ def test_the_page_holds_these_pictures_with_words_for_those_who_do_not_see_them(
     assert len(maps) == len(error().order_maps) > 0
     for found in (hysteresis(), error()):
         assert plot(found) is not None
+
+
+@needs_browser
+@pytest.mark.parametrize("width", [PHONE, DESKTOP])
+def test_the_page_fits_a_phone_and_a_desktop(width: int, tmp_path: Path) -> None:
+    for name, found in (("loop", hysteresis()), ("map", error())):
+        (tmp_path / name).mkdir()
+        layout(report_html(found), width, tmp_path / name).check()
 
 
 def test_without_a_claim_there_is_no_loop_after() -> None:
