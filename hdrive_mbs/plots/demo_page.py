@@ -107,10 +107,8 @@ def _verdict(diagnosis: Diagnosis) -> str:
     if not diagnosis.gaps:
         return said
     gap = diagnosis.gap
-    return (
-        f"{said} Gap on stretches that no fit saw, in standard deviations of the noise: refitted {_short(gap.refit.value)},"
-        f" with the cause {_short(gap.effect.value)}."
-    )
+    then = f", with the cause {_short(gap.effect.value)}" if diagnosis.causes else ""
+    return f"{said} Gap on stretches that no fit saw, in standard deviations of the noise: refitted {_short(gap.refit.value)}{then}."
 
 
 def _run_up(results: DemoResults) -> Iterator[str]:

@@ -84,8 +84,8 @@ class DrivePicture:
         self._magnified = magnification if magnification is not None else max(1.0, float(f"{OVAL * bore / w0:.1g}"))
         self.description = (
             f"{readable(name)} of {scene.name} in motion from {start:.4g} s to {end:.4g} s: circular spline, flexspline and wave "
-            f"generator turning as in the run, teeth going in and out of mesh, torque over twist, speeds over time. The ovality of "
-            f"the generator is magnified {number(self._magnified)} times; the teeth are to scale."
+            f"generator turning as in the run, teeth going in and out of mesh, torque over twist, speed of the wave generator and torque "
+            f"over time. The ovality of the generator is magnified {number(self._magnified)} times; the teeth are to scale."
         )
         with house_look():
             self.figure = new_figure(10.6, 6.6)

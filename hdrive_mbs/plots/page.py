@@ -11,6 +11,7 @@ from typing import Any
 from matplotlib.axes import Axes
 
 from hdrive_mbs.diagnosis.report_rows import Table
+from hdrive_mbs.plots.alternative import drawn_words
 
 STYLE = """
 body { font: 16px/1.45 system-ui, sans-serif; color: #1a1a1a; background: #fff; overflow-wrap: anywhere; }
@@ -72,6 +73,7 @@ def table_of(table: Table, caption: str) -> Iterator[str]:
 def figure(axes: Axes, alternative: str, caption: str, *, points: bool = False) -> str:
     """The whole figure of some axes, with a text for those who do not see it.
 
+    alternative : what it says; what is drawn in it is added, see ``drawn_words``
     points : whether it has so many points that a picture of dots is smaller than one of lines
     """
     drawn: Any = axes.figure.figure
@@ -81,5 +83,6 @@ def figure(axes: Axes, alternative: str, caption: str, *, points: bool = False) 
     save(buffer, format=kind, dpi=DOTS, metadata={"Software": None} if points else {"Date": None})
     width, height = (round(96.0 * size) for size in drawn.get_size_inches())
     data = base64.b64encode(buffer.getvalue()).decode("ascii")
-    picture = f'<img alt="{escape(alternative, quote=True)}" width="{width}" height="{height}" src="data:{mime};base64,{data}">'
+    words = f"{alternative} {drawn_words(axes)}".strip()
+    picture = f'<img alt="{escape(words, quote=True)}" width="{width}" height="{height}" src="data:{mime};base64,{data}">'
     return f"<figure>{picture}<figcaption>{escape(caption)}</figcaption></figure>"

@@ -15,7 +15,7 @@ from hdrive_mbs.plots.diagnosis import worst_first
 from hdrive_mbs.plots.diagnosis_domain import plot_domain, plot_orders
 from hdrive_mbs.plots.diagnosis_force import plot_force
 from hdrive_mbs.plots.diagnosis_gap import plot_gap
-from hdrive_mbs.plots.diagnosis_look import varies
+from hdrive_mbs.plots.diagnosis_look import steps_of, varies
 from hdrive_mbs.plots.diagnosis_loop import plot_loop
 from hdrive_mbs.plots.diagnosis_ranking import plot_places, plot_ranking
 from hdrive_mbs.plots.diagnosis_traces import OVER, plot_residual, plot_traces
@@ -69,10 +69,8 @@ def _gap(diagnosis: Diagnosis) -> Iterator[str]:
     if not diagnosis.gaps:
         return
     gap = diagnosis.gap
-    text = (
-        f"Bars on a logarithmic axis. All records and columns together: nominal {digits(gap.nominal.value, 3)}, "
-        f"refitted {digits(gap.refit.value, 3)}, with the cause {digits(gap.effect.value, 3)} standard deviations of the noise."
-    )
+    sizes = ", ".join(f"{words} {digits(getattr(gap, name).value, 3)}" for name, words in steps_of(bool(diagnosis.causes)).items())
+    text = f"Bars on a logarithmic axis. All records and columns together: {sizes} standard deviations of the noise."
     yield figure(plot_gap(diagnosis), text, "Root mean square on held-out stretches, with 95 % intervals; dashed: noise alone.")
     yield "<details><summary>Numbers, in noise and in the columns' units</summary>"
     yield from table_of(report_rows.gap_table(diagnosis), "Standard deviations of the noise (95 % interval)")
@@ -97,9 +95,8 @@ def _curves(diagnosis: Diagnosis) -> Iterator[str]:
 def _trace(diagnosis: Diagnosis, trace: Trace) -> str:
     axes = plot_traces(diagnosis, record=trace.record, column=trace.column)
     text = (
-        f"Column {named(trace.column)} of record {trace.record} over {digits(float(trace.times[-1]), 3)} s: measured, and simulated before"
+        f"Column {named(trace.column)} of record {trace.record} over {digits(float(trace.times[-1]), 3)} s, and below it what models leave."
     )
-    text += f"{' and after' if diagnosis.causes else ''}; below, what is left between them in standard deviations of the noise."
     said = f"{trace.record}, {named(trace.column)}. Grey ground: held out, no fit saw it. Grey band below: plus and minus two noise sigmas."
     return figure(axes, text, said, points=True)
 
@@ -107,8 +104,7 @@ def _trace(diagnosis: Diagnosis, trace: Trace) -> str:
 def _residual(diagnosis: Diagnosis, trace: Trace) -> str:
     axes = plot_residual(diagnosis, record=trace.record, column=trace.column)
     over = [name for name in OVER if varies(getattr(trace, name), len(trace.times))]
-    text = f"Measured minus simulated {named(trace.column)} of record {trace.record} against {' and '.join(over)}, before"
-    text += " and after." if diagnosis.causes else "."
+    text = f"Measured minus simulated {named(trace.column)} of record {trace.record}."
     return figure(axes, text, f"What is left of {named(trace.column)}, record {trace.record}, against {', '.join(over)}.", points=True)
 
 
@@ -123,11 +119,11 @@ def _where(diagnosis: Diagnosis) -> Iterator[str]:
         yield from paragraphs(sentences.where_sentences(diagnosis, 5))
     for force in diagnosis.forces:
         axes = plot_force(diagnosis, at=force.at, way=force.way, record=force.record)
-        text = f"Estimated unknown signal at {force.at} {force.way} during record {force.record}, over time and against what varies there."
+        text = f"Estimated unknown signal at {' '.join(filter(None, (force.at, force.way)))} during record {force.record}."
         yield figure(axes, text, f"What must have acted at {force.at} for the refitted model to follow the record.", points=True)
     for loop in diagnosis.loops:
         axes = plot_loop(diagnosis, record=loop.record)
-        text = f"Loop of torque against twist of {loop.at} during record {loop.record}: estimated from the record, before and after."
+        text = f"Loop of torque against twist of {loop.at} during record {loop.record}."
         yield figure(axes, text, f"Hysteresis loop of {loop.at}, record {loop.record}, without its straight line.")
 
 

@@ -249,6 +249,24 @@ def test_the_generator_and_the_flexspline_stand_at_the_angles_of_the_run(run: hm
         assert np.hypot(x, y) * np.array([-np.sin(angle), np.cos(angle)]) == pytest.approx([x, y], abs=1e-6)
 
 
+def test_the_teeth_move_beside_the_curves_of_speed_and_torque_whose_cursor_stands_at_the_frame(run: hm.Response) -> None:
+    picture = _shown_drive(run, 40)
+    [history] = [ax for ax in picture.figure.axes if ax.get_ylabel() == "wave generator [rad/s]"]
+    beside = next(ax for ax in history.get_shared_x_axes().get_siblings(history) if ax is not history)
+    assert history.get_xlabel() == "time [s]"
+    assert beside.get_ylabel().startswith("torque of gear")
+    for ax, channel in ((history, "gear.wave_generator.speed"), (beside, "gear.torque")):
+        times, values = (np.asarray(item, float) for item in ax.lines[0].get_data())
+        assert (times[0], times[-1]) == (run.times[0], run.times[-1])
+        # curves are thinned to some of the run's own samples
+        assert values == pytest.approx(run.values[channel][np.searchsorted(run.times, times - 1e-12)], abs=1e-12)
+        assert np.ptp(values) == pytest.approx(np.ptp(run.values[channel]), rel=0.01)
+    assert list(picture._cursor.get_xdata()) == [picture._moments.times[40]] * 2
+    picture.show(41)
+    assert list(picture._cursor.get_xdata()) == [picture._moments.times[41]] * 2
+    assert "speed of the wave generator and torque over time" in picture.description
+
+
 def test_the_drawn_teeth_touch_on_one_flank_and_do_not_enter_each_other(run: hm.Response) -> None:
     from shapely import Polygon
     from shapely.affinity import rotate

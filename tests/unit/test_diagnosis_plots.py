@@ -247,6 +247,20 @@ def test_page_needs_nothing_from_outside_and_names_every_picture(sample: str) ->
     assert page.headings[0].startswith("Diagnosis of 'drive bench'")
 
 
+def test_words_of_a_picture_name_the_models_that_are_drawn_and_no_others() -> None:
+    """Of a claim all three; where none is claimed, nothing is drawn with a cause, nor after."""
+    told = {sample: [str(picture["alt"]) for picture in pages(sample).pictures] for sample in ("effect", "none")}
+    claimed = [text for text in told["effect"] if text.startswith(("Bars on a log", "Column", "Measured minus", "Loop", "Map"))]
+    assert len(claimed) == 1 + 2 + 1 + 1 + 1
+    assert all("with the cause" in text for text in claimed)
+    assert not any("with the cause" in text or "after" in text for text in told["none"])
+    [loop] = [text for text in told["effect"] if text.startswith("Loop")]
+    assert loop.endswith("over twist of gear. Shown: estimated, parameters refitted, with the cause.")
+    [orders] = [text for text in told["effect"] if text.startswith("Map")]
+    assert "before (parameters refitted): speed of motor over order" in orders
+    assert "after (with the cause): speed of motor over order" in orders
+
+
 def test_page_of_an_effect_has_every_picture() -> None:
     # gap, two traces, one residual, places, force, loop, domain, order map, ranking
     assert len(pages("effect").pictures) == 1 + 2 + 7
