@@ -17,11 +17,12 @@ if TYPE_CHECKING:  # it loads numpy, and the threads of BLAS are set before
 class Where:
     """Where jobs run, and where finished ones are kept.
 
-    workers : processes; 0 for this process;  scheduler : address of a dask scheduler, whose workers are used instead
+    workers : processes, as many as the machine has cores if None; 0 for this process
+    scheduler : address of a dask scheduler, whose workers are used instead
     kept : folder of finished jobs, from which an interrupted benchmark goes on; None keeps nothing
     """
 
-    workers: int = 0
+    workers: int | None = 0
     scheduler: str | None = None
     kept: Path | None = None
 
@@ -32,7 +33,7 @@ class Where:
         """
         from hdrive_mbs.campaign.sweeping import sweep
 
-        executor = self.scheduler or ("processes" if self.workers else "here")
+        executor = self.scheduler or ("here" if self.workers == 0 else "processes")
         found = sweep(function, points, executor=executor, workers=self.workers or None, folder=self.kept, **more)
         for failure in found.failures:
             print(f"failed: {failure['parameters']}: {failure['error']}", file=sys.stderr)
@@ -43,7 +44,7 @@ class Where:
 
 def add_where(parser: argparse.ArgumentParser) -> None:
     """The options --workers, --scheduler and --kept."""
-    parser.add_argument("--workers", type=int, default=0, help="cases side by side, a process each (default 0: in this process)")
+    parser.add_argument("--workers", type=int, help="cases side by side, a process each (default: one a core); 0: in this process")
     parser.add_argument(
         "--scheduler",
         metavar="ADDRESS",
@@ -54,6 +55,6 @@ def add_where(parser: argparse.ArgumentParser) -> None:
 
 def where(options: argparse.Namespace) -> Where:
     """What was asked for.  Raises SystemExit for a negative number of workers."""
-    if options.workers < 0:
+    if options.workers is not None and options.workers < 0:
         raise SystemExit(f"--workers {options.workers}: must be at least 0")
     return Where(workers=options.workers, scheduler=options.scheduler, kept=options.kept)

@@ -7,11 +7,12 @@ import platform
 from importlib import metadata
 from pathlib import Path
 
+from benchmarks.commit import commit
 from hdrive_mbs.analysis.result import versions
 
 
 def machine() -> dict[str, str]:
-    """Processor, number of cores, system load, BLAS threads and versions."""
+    """Processor, number of cores, system load, BLAS threads, versions, and the commit of this repository."""
     found = {
         "processor": _processor(),
         "cores": str(os.cpu_count()),
@@ -25,7 +26,7 @@ def machine() -> dict[str, str]:
             found[name] = metadata.version(name)
         except metadata.PackageNotFoundError:
             found[name] = "not installed"
-    return found
+    return {**found, "commit": commit()}
 
 
 def _processor() -> str:

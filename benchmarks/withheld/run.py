@@ -11,7 +11,6 @@ import argparse
 import json
 import os
 import pickle
-import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -22,6 +21,7 @@ from typing import Any
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")  # before numpy is loaded
 
+from benchmarks.commit import commit  # noqa: E402
 from benchmarks.machine import machine  # noqa: E402
 from benchmarks.withheld.answer import failed_answer  # noqa: E402
 from benchmarks.withheld.methods import METHODS, method  # noqa: E402
@@ -33,6 +33,8 @@ from hdrive_mbs.diagnosis import verdict  # noqa: E402
 from hdrive_mbs.errors import DependencyError, SimulationError  # noqa: E402
 from hdrive_mbs.writing import write_text  # noqa: E402
 
+SOURCES = ("hdrive_mbs", "models", "benchmarks/withheld/*.py")
+"""What answers depend on."""
 RETRIES = 1
 """How often a case is begun again whose process was lost (out of memory, say)."""
 
@@ -177,19 +179,7 @@ def about(job: Job) -> dict[str, Any]:
     """Method, constants of the verdict, commit and machine."""
     constants = {name: value for name, value in vars(verdict).items() if name.isupper() and isinstance(value, float)}
     found = {"bench": job.bench, "method": job.method, "processes_each": job.each}
-    return {**found, "commit": _commit(), "verdict": constants, "machine": machine()}
-
-
-def _commit() -> str:
-    """Commit of the method, marked where sources differ from it; "unknown" outside of a repository."""
-    home = Path(__file__).parents[2]
-    try:
-        commit = subprocess.run(["git", "rev-parse", "HEAD"], cwd=home, capture_output=True, text=True, check=True).stdout.strip()
-        status = ["git", "status", "--porcelain", "--", "hdrive_mbs", "models", "benchmarks/withheld/*.py"]
-        changed = subprocess.run(status, cwd=home, capture_output=True, text=True, check=True).stdout.strip()
-    except (OSError, subprocess.CalledProcessError):
-        return "unknown"
-    return f"{commit} with changes" if changed else commit
+    return {**found, "commit": commit(SOURCES), "verdict": constants, "machine": machine()}
 
 
 def _tell(name: str, answer: Mapping[str, Any], done: int, of: int, start: float) -> None:

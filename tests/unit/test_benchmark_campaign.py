@@ -17,6 +17,7 @@ from benchmarks.flagship.report import report as flagship_report
 from benchmarks.locate import study as locate
 from benchmarks.locate.report import report as locate_report
 from benchmarks.machine import machine
+from benchmarks.real import studies as real
 from tests.unit import campaign_jobs as jobs
 from tests.unit.test_campaign import log_lines, points
 from tests.unit.test_campaign_cluster import cluster  # noqa: F401  (a fixture)
@@ -90,7 +91,8 @@ def test_a_failing_case_is_said_and_does_not_stop_the_others(capsys: pytest.Capt
 def test_options_ask_for_processes_a_cluster_and_a_folder() -> None:
     parser = argparse.ArgumentParser()
     add_where(parser)
-    assert where(parser.parse_args([])) == Where()
+    assert where(parser.parse_args([])) == Where(workers=None)
+    assert where(parser.parse_args(["--workers", "0"])) == Where()
     asked = where(parser.parse_args(["--workers", "3", "--kept", "there", "--scheduler", "tcp://host:8786"]))
     assert asked == Where(workers=3, scheduler="tcp://host:8786", kept=Path("there"))
     with pytest.raises(SystemExit, match=r"--workers -1: must be at least 0"):
@@ -114,6 +116,36 @@ def test_the_flagship_tells_a_case_that_failed_beside_those_that_did_not(monkeyp
     assert "stopped: ValueError: no steady state" in text
     assert "mesh_friction at one (MeshFriction)" in text
     assert "1 of 2 right" in text
+
+
+def test_a_study_of_measurements_is_put_together_from_parts_that_were_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Numbers and curves come back from files as they were; a part that fails leaves the study as it was."""
+    curve = np.linspace(0.0, 1.0, 5)
+
+    def work(part: str) -> dict[str, Any]:
+        if part == "C":
+            raise ValueError("no such run")
+        shown = {"nominal": {"measured": {"torque": curve}, "simulated": {"torque": 0.5 * curve}, "rms": {"torque": 0.3}}}
+        return {"numbers": {"part": part, "rounds": [{"causes": [], "gap": {"nominal": [2.0, 1.9, 2.1]}}]}, "shown": shown}
+
+    def whole(parts: Mapping[str, dict[str, Any]]) -> tuple[dict[str, Any], dict[str, Any]]:
+        unseen = {name: real._drawn(part)["nominal"] for name, part in parts.items()}
+        assert all(same(item.measured["torque"] - item.simulated["torque"], 0.5 * curve) for item in unseen.values())
+        return {"of": [part["numbers"]["part"] for part in parts.values()]}, {}
+
+    kept = Where(kept=tmp_path)
+    monkeypatch.setitem(real.STUDIES, "own", real.Kind(parts=("A", "B"), work=work, whole=whole))
+    for _ in range(2):
+        found = real.studied("own", kept)
+        assert found is not None
+        assert found[0]["of"] == ["A", "B"]
+        assert {"seconds", "machine"} <= set(found[0])
+        assert len(list((tmp_path / "jobs").iterdir())) == 2
+    monkeypatch.setitem(real.STUDIES, "own", real.Kind(parts=("A", "C"), work=work, whole=whole))
+    assert real.studied("own", kept) is None
+    assert "failed: {'study': 'own', 'part': 'C'}: ValueError: no such run" in capsys.readouterr().err
 
 
 def test_the_localisation_counts_a_case_that_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
