@@ -12,7 +12,8 @@ from hdrive_mbs.compiled.line import CompiledLine
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.following import following
 from hdrive_mbs.diagnosis.simulator import Simulator
-from hdrive_mbs.errors import HdriveError
+from hdrive_mbs.diagnosis.trial_runs import fold_of, run_trial
+from hdrive_mbs.errors import HdriveError, SimulationError
 from hdrive_mbs.network.network import Network
 
 FloatArray = npt.NDArray[np.float64]
@@ -28,7 +29,10 @@ def network_of(simulator: Simulator, number: int, fitted: Fitted) -> Network | N
 
 
 def along(simulator: Simulator, number: int, fitted: Fitted, channels: Sequence[str]) -> dict[str, FloatArray]:
-    """Values of channels at the samples of a trial, from where it starts; of those that the model has, none where it cannot be run."""
+    """Values of channels at the samples of a trial, from where it starts; of those that the model has, none where it cannot be run.
+
+    It is run as a fit runs it: with half of the step where it grows.
+    """
     trial, network = simulator.trials[number], network_of(simulator, number, fitted)
     if network is None:
         return {}
@@ -40,8 +44,9 @@ def along(simulator: Simulator, number: int, fitted: Fitted, channels: Sequence[
         start = simulator.start_of(number, fitted.hypothesis, fitted.z)
         if network.is_lateral:
             network = without_idle(network, {**start, **{f"{name}_rate": value for name, value in trial.speeds.items()}})
-        line = CompiledLine(network, wanted)
-        run = line.run(trial.samples, trial.every, step=simulator.step, angles=start, speeds=trial.speeds)
+        measured = (item.channel for item in trial.measured.values())  # whose growth tells that the step is too long
+        line = CompiledLine(network, tuple(dict.fromkeys((*wanted, *measured))))
     except HdriveError:
         return {}
-    return {name: run.values[name] for name in wanted}
+    [run] = run_trial(trial, [line], [start], simulator.step, parts=simulator.parts)
+    return {} if isinstance(run, SimulationError) else {name: run.values[name][:: fold_of(trial)].copy() for name in wanted}

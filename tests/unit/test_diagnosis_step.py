@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
+from hdrive_mbs.diagnosis.along import along
+from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -85,3 +87,26 @@ def test_a_point_that_grows_is_run_with_half_of_what_was_taken_beside_a_column_t
     assert first is not None
     assert second is not None
     assert np.max(np.abs(second - first)) < 1.0
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.5])
+def test_channels_along_a_trial_are_those_of_the_run_that_a_fit_compares(shift: float) -> None:
+    """Also where that run took half of the step, because it grew."""
+    rate = (1.95 if shift else 0.95 * 3) * REACH / EVERY
+    given = late(rate, EVERY, 1e-3) if shift else trial(rate)
+    given = dataclasses.replace(given, held_out=np.arange(SAMPLES) % 8 == 0)
+    stiff = Hypothesis(factors=(Factor("", name="stiffness", nominal={"shaft.stiffness": 0.5 * INERTIA * rate**2}, sigma=0.1),))
+    simulator = Simulator([given], EVERY if shift else suitable_step([given], ()))
+    point = np.array([4.0])
+    fitted = fit(simulator, stiff, point, steps=0)
+    found = along(simulator, 0, fitted, ["load.speed", "load.angle", "no such channel"])
+    assert set(found) == {"load.speed", "load.angle"}
+    [own] = simulator.columns(stiff, point)
+    at, compared = found["load.angle"], own["angle"]
+    if shift:  # midway between samples a steady acceleration bends by a h^2/8, and the shaft twists by T/K at most while it vibrates
+        acceleration, twist = 1e-3 / (2.0 * INERTIA), 1e-3 / (0.5 * INERTIA * rate**2)
+        np.testing.assert_allclose(compared[:-1], 0.5 * (at[1:] + at[:-1]), rtol=0.0, atol=acceleration * EVERY**2 / 8.0 + twist)
+    else:
+        np.testing.assert_array_equal(compared, at)
+    # both inertias under the torque alone, and the vibration on top
+    assert np.max(np.abs(found["load.speed"])) == pytest.approx(1e-3 / (2.0 * INERTIA) * SAMPLES * EVERY, rel=0.02)
