@@ -20,8 +20,10 @@ from hdrive_mbs.diagnosis.force_orders import ForceOrders
 from hdrive_mbs.diagnosis.ground import screen_from
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.locate import Localiser
+from hdrive_mbs.diagnosis.locate.linear import Transfers
 from hdrive_mbs.diagnosis.locate.motion import KnownForce, columns_of
 from hdrive_mbs.diagnosis.locate.observer import Observer, observer
+from hdrive_mbs.diagnosis.locate.response import KEPT
 from hdrive_mbs.diagnosis.located import localised_about, located
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.periods import Periods
@@ -196,6 +198,36 @@ def test_a_torque_on_the_spin_is_tied_to_all_places_of_the_stiff_shaft() -> None
     assert best.at != NOWHERE
     assert best.probability < 0.5
     assert len(best.tied) >= 3
+
+
+def test_transfers_are_worked_out_when_they_are_asked_for_and_only_some_are_kept() -> None:
+    """Together or one by one, they are those of a system that is solved at each frequency."""
+    about = localiser()._about
+    [of] = [item.of for item in about.responses]
+    names = list(of)
+    assert len(names) == len(of) > 3 * KEPT
+    assert len(of._kept) <= KEPT
+    acting = [name for name in names if about.responses[0].sources[name].along][:KEPT]
+    of._kept.clear()
+    of.fetch(acting)
+    assert list(of._kept) == acting
+    together = {name: of[name].copy() for name in acting}
+    for name in acting:
+        of._kept.clear()
+        np.testing.assert_allclose(of[name], together[name], rtol=0.0, atol=1e-9 * np.max(np.abs(together[name])))
+    of.fetch([name for name in names if name not in acting])
+    assert len(of._kept) <= KEPT
+    assert "no such place" not in of
+    with pytest.raises(KeyError):
+        of["no such place"]
+    linear, rates = about.lines[0].linear, 1j * np.array([30.0, 900.0, 2500.0])
+    at = [0, 3]
+    solved = [
+        [c @ np.linalg.solve(s * np.eye(len(a)) - a, b[:, at]) + d[:, at] for s in rates]
+        for a, b, c, d in zip(linear.a, linear.b, linear.c, linear.d, strict=True)
+    ]
+    found = Transfers(linear, rates).of(at)
+    np.testing.assert_allclose(found, np.array(solved), rtol=0.0, atol=1e-5 * np.max(np.abs(solved)))  # what a sum over modes may be off by
 
 
 def test_the_course_of_a_force_on_a_rotor_comes_out() -> None:

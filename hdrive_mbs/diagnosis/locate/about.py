@@ -46,6 +46,11 @@ class About:
         """Of a source in trial k: where the spin alone is watched, that of a torque at its place; None where it does not show."""
         return self.responses[k].of.get(self.shown(name, k))
 
+    def fetch(self, names: Sequence[str]) -> None:
+        """Work out the transfers of several sources together, in all trials; see ``OfSources.fetch``."""
+        for k, item in enumerate(self.responses):
+            item.of.fetch(list(dict.fromkeys(self.shown(name, k) for name in names)))
+
     def shown(self, name: str, k: int) -> str:
         """The source that shows a place in trial k."""
         return name if name in self.responses[k].of else f"{self.at(name)}, {TURNING}"

@@ -18,7 +18,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 CHANGE = {"rad": 1e-6, "m": 1e-9, "state": 1e-4}
 """Half the distance of the points of the differences; that of a rate: a hundred times as much."""
-CELLS = 200_000
+CELLS = 16_000
 """Moments that are evaluated at a time."""
 AGREES = 1e-5
 """Relative difference up to which a sum over modes stands for a solved system."""
@@ -77,32 +77,62 @@ def _moment(network: Network, times: FloatArray, values: Mapping[str, FloatArray
     return network.moment(times, picked["angle"], picked["speed"], picked["state"])
 
 
-def transfers(linear: Linear, rates: ComplexArray) -> ComplexArray:
-    """C (s - A)^-1 B + D at each s, shape (n, len(rates), channels, forces)."""
-    found = [_by_modes(*parts, rates) for parts in zip(linear.a, linear.b, linear.c, strict=True)]
-    return np.asarray(np.array(found) + linear.d[:, None])
+class Transfers:
+    """C (s - A)^-1 B + D of a linearised network at each s, for the forces that are asked for.
+
+    As a sum over eigenvectors, sum_m C v_m w_m B / (s - lambda_m); where these are nearly parallel, a system is solved for each s.
+    """
+
+    def __init__(self, linear: Linear, rates: ComplexArray) -> None:
+        self._linear, self._rates = linear, rates
+        self._modes = [_modes(*parts, rates) for parts in zip(linear.a, linear.b, linear.c, strict=True)]
+
+    def of(self, forces: Sequence[int]) -> ComplexArray:
+        """Shape (n, rates, channels, forces asked for)."""
+        at, linear, rates = list(forces), self._linear, self._rates
+        parts = [
+            _solved(a, b[:, at], c, rates) if modes is None else modes.transfer(at)
+            for modes, a, b, c in zip(self._modes, linear.a, linear.b, linear.c, strict=True)
+        ]
+        return np.asarray(np.array(parts) + linear.d[:, None][..., at])
 
 
-def _by_modes(a: FloatArray, b: FloatArray, c: FloatArray, rates: ComplexArray) -> ComplexArray:
-    """As a sum over eigenvectors; solved one by one where they are nearly parallel."""
+@dataclass(frozen=True, eq=False)
+class _Modes:
+    """Modes at one moment.
+
+    poles : 1/(s - lambda), (rates, modes);  read : C V, (channels, modes);  driven : V^-1 B, (modes, forces)
+    """
+
+    poles: ComplexArray
+    read: ComplexArray
+    driven: ComplexArray
+
+    def transfer(self, forces: Sequence[int]) -> ComplexArray:
+        """Shape (rates, channels, forces asked for)."""
+        driven = self.driven[:, list(forces)]
+        residues = self.read.T[:, :, None] * driven[:, None, :]
+        return np.asarray((self.poles @ residues.reshape(len(driven), -1)).reshape(len(self.poles), len(self.read), -1))
+
+
+def _modes(a: FloatArray, b: FloatArray, c: FloatArray, rates: ComplexArray) -> _Modes | None:
+    """None where a sum over eigenvectors is not what a solved system gives, or there is no force."""
     if not b.shape[1]:
-        return np.zeros((len(rates), len(c), 0), complex)
+        return None
     values, vectors = np.linalg.eig(a)
-    check = np.array([rates[0], rates[len(rates) // 2]])
-    right = _solved(a, b, c, check)
+    check = [0, len(rates) // 2]
+    right = _solved(a, b, c, rates[check])
     try:
         left = np.linalg.solve(vectors, b.astype(complex))
     except np.linalg.LinAlgError:
-        return _solved(a, b, c, rates)
-
-    def summed(at: ComplexArray) -> ComplexArray:
-        return np.asarray((c @ vectors)[None] / (at[:, None] - values)[:, None, :] @ left)
-
-    if np.max(np.abs(summed(check) - right)) > AGREES * np.max(np.abs(right)):
-        return _solved(a, b, c, rates)
-    return summed(rates)
+        return None
+    made = _Modes(1.0 / (rates[:, None] - values), c @ vectors, left)
+    found = _Modes(made.poles[check], made.read, left).transfer(range(b.shape[1]))
+    return None if np.max(np.abs(found - right)) > AGREES * np.max(np.abs(right)) else made
 
 
 def _solved(a: FloatArray, b: FloatArray, c: FloatArray, rates: ComplexArray) -> ComplexArray:
+    if not b.shape[1]:
+        return np.zeros((len(rates), len(c), 0), complex)
     system = rates[:, None, None] * np.eye(len(a)) - a
     return np.asarray(c @ np.linalg.solve(system, np.broadcast_to(b, (len(rates), *b.shape)).astype(complex)))

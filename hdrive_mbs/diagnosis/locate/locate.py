@@ -16,6 +16,7 @@ from hdrive_mbs.diagnosis.locate.about import About, linearised
 from hdrive_mbs.diagnosis.locate.latent_force import LatentForce, TurnedForce, by_direction, latent_force, most_probable
 from hdrive_mbs.diagnosis.locate.likelihood import Explained, Likelihood, directions
 from hdrive_mbs.diagnosis.locate.motion import KnownForce
+from hdrive_mbs.diagnosis.locate.response import KEPT
 from hdrive_mbs.diagnosis.locate.spectra import joined
 from hdrive_mbs.diagnosis.result import NOWHERE, Place
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -122,7 +123,11 @@ class Localiser:
 
     def _tried_about(self, about: About, nowhere: Explained) -> list[_Tried]:
         """All places about one motion, the best of them with parameters of their own that begin at those of nowhere."""
-        tried = _one_a_place([self._quick(about, nowhere, name) for name in self.names])
+        looked: list[_Tried] = []
+        for some in (self.names[first : first + KEPT] for first in range(0, len(self.names), KEPT)):
+            about.fetch(some)
+            looked += [self._quick(about, nowhere, name) for name in some]
+        tried = _one_a_place(looked)
         for k, item in enumerate(tried[:SERIOUS]):
             tried[k] = self._try(about, item.name, nowhere.z, rounds=2)
         return sorted(tried, key=lambda item: -item.gain)

@@ -60,9 +60,8 @@ class Observer:
         """Of rows, shape (rows, columns, samples)."""
         number, columns, samples = rows.shape
         stretches = len(self.kept)
-        padded = np.zeros((stretches * self.length, columns, number))
-        padded[:samples] = np.moveaxis(rows, 2, 0).transpose(0, 2, 1)
-        found = np.empty_like(padded)
+        found = np.zeros((stretches * self.length, columns, number))  # begins as the rows and becomes their errors, step by step
+        found[:samples] = np.moveaxis(rows, 2, 0).transpose(0, 2, 1)
         state = np.zeros((self.kept.shape[1], number))
         for k in range(stretches):
             own = self.kept[k], self.gain[k], self.read[k]
@@ -71,7 +70,7 @@ class Observer:
             for at in range(k * self.length, end, STRIDE):
                 count = min(STRIDE, end - at)
                 seen, driven, moved, pushed = whole if count == STRIDE else rest
-                given = padded[at : at + count].reshape(-1, number)
+                given = found[at : at + count].reshape(-1, number).copy()
                 found[at : at + count] = (given - seen @ state - driven @ given).reshape(count, columns, number)
                 state = moved @ state + pushed @ given
         return np.ascontiguousarray(found[:samples].transpose(2, 1, 0))

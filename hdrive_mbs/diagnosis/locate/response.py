@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.locate.line import Line, of_windows
-from hdrive_mbs.diagnosis.locate.linear import transfers
+from hdrive_mbs.diagnosis.locate.linear import Transfers
 from hdrive_mbs.diagnosis.locate.motion import Motion
 from hdrive_mbs.diagnosis.locate.sources import Source
 from hdrive_mbs.diagnosis.locate.spectra import Spectra
@@ -20,16 +20,84 @@ SLOWEST = 0.25
 """Of the distance of two bins: the frequency that stands for zero."""
 
 
+KEPT = 8
+"""Sources of a trial whose transfers are kept: those of all at once take about a gigabyte on a rotor line."""
+
+
+class OfSources(Mapping[str, ComplexArray]):
+    """Source -> whitened transfer, shape (windows, bins, columns, d), worked out when it is asked for.
+
+    columns : of a source that acts, where its forces stand among those of the line
+    errors : of sensors, where their columns stand;  rotating : sources whose force turns with the shaft
+    """
+
+    def __init__(
+        self,
+        line: Line,
+        spectra: Spectra,
+        columns: Mapping[str, Sequence[int]],
+        errors: Mapping[str, Sequence[int]],
+        rotating: Collection[str],
+    ) -> None:
+        self._columns = {name: at for name, at in columns.items() if name not in errors}
+        self._errors, self._rotating = dict(errors), frozenset(rotating)
+        self._whitening, self._windows = spectra.whitening, len(spectra.values)
+        measured = spectra.trial.measured.values()
+        rates = np.maximum(spectra.frequencies, SLOWEST * spectra.frequencies[1])
+        late = np.array([item.late * spectra.trial.every for item in measured])
+        self._delay = np.exp(1j * spectra.frequencies[:, None] * late)[..., None]
+        self._transfers = Transfers(line.linear, 1j * rates)
+        self._seen = None if line.observer is None else line.observer.noise_transfer(rates)
+        shown = np.broadcast_to(np.eye(len(late), dtype=complex), (*spectra.values.shape[:2], len(late), len(late)))
+        if self._seen is not None:
+            shown = of_windows(self._seen, self._windows)
+        self._shown = self._whitening @ shown
+        self._kept: dict[str, ComplexArray] = {}
+
+    def __getitem__(self, name: str) -> ComplexArray:
+        if name in self._errors:
+            return np.asarray(self._shown[..., list(self._errors[name])])
+        if name not in self._columns:
+            raise KeyError(name)
+        if name not in self._kept:
+            self.fetch([name])
+        return self._kept[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._errors or name in self._columns
+
+    def __iter__(self) -> Iterator[str]:
+        return iter((*self._columns, *self._errors))
+
+    def __len__(self) -> int:
+        return len(self._columns) + len(self._errors)
+
+    def fetch(self, names: Sequence[str]) -> None:
+        """Work out several together, at most KEPT, which is quicker than one by one; those that were asked for longest ago are dropped."""
+        wanted = [name for name in names if name in self._columns and name not in self._kept]
+        at = [k for name in wanted for k in self._columns[name]]
+        transfer = self._transfers.of(at) * self._delay
+        if self._seen is not None:
+            transfer = of_windows(self._seen @ transfer, self._windows)
+        transfer = self._whitening @ transfer
+        first = 0
+        for name in wanted:
+            own = transfer[..., first : first + len(self._columns[name])]
+            first += own.shape[-1]
+            self._kept[name] = np.ascontiguousarray(own[..., 0::2] - 1j * own[..., 1::2] if name in self._rotating else own)
+        while len(self._kept) > KEPT:
+            self._kept.pop(next(iter(self._kept)))
+
+
 @dataclass(frozen=True, eq=False)
 class Response:
     """Transfers of one trial.
 
-    sources : what may act in this trial, by name
-    of : source -> whitened transfer, shape (windows, bins, columns, d)
+    sources : what may act in this trial, by name;  of : their whitened transfers
     """
 
     sources: Mapping[str, Source]
-    of: Mapping[str, ComplexArray]
+    of: OfSources
 
 
 def response(motion: Motion, line: Line, spectra: Spectra) -> Response:
@@ -38,30 +106,19 @@ def response(motion: Motion, line: Line, spectra: Spectra) -> Response:
     A column that measures a channel without a sensor in the scene is a place by its own name.
     """
     trial, network = motion.trial, motion.network
-    rates = np.maximum(spectra.frequencies, SLOWEST * spectra.frequencies[1])
-    transfer = transfers(line.linear, 1j * rates)
-    late = np.array([item.late * trial.every for item in trial.measured.values()])
-    transfer = transfer * np.exp(1j * spectra.frequencies[:, None] * late)[..., None]
-    errors: ComplexArray = np.broadcast_to(np.eye(len(late), dtype=complex), (*spectra.values.shape[:2], len(late), len(late)))
-    if line.observer is not None:
-        seen = line.observer.noise_transfer(rates)
-        transfer, errors = of_windows(seen @ transfer, len(errors)), of_windows(seen, len(errors))
-    transfer, errors = spectra.whitening @ transfer, spectra.whitening @ errors
-    found: dict[str, ComplexArray] = {}
-    for source in line.sources:
-        own = transfer[..., [k for k, (name, _) in enumerate(line.states) if name == source.name]]
-        found[source.name] = own[..., 0::2] - 1j * own[..., 1::2] if source.rotating else own
+    acting = {source.name: [k for k, (name, _) in enumerate(line.states) if name == source.name] for source in line.sources}
     known = {channel.name: channel for channel in network.channels}
-    readers = {}
+    readers, errors = {}, {}
     for k, (column, item) in enumerate(trial.measured.items()):
         channel = known.get(item.channel)
         sensor = channel is not None and channel.reads is not None
         if not sensor and item.channel.endswith((".torque", ".command")):
             continue  # a command: what is wrong with it is a force at the motor
         name = item.channel if sensor else column
-        found[name] = errors[..., [k]]
+        errors[name] = [k]
         readers[name] = Source(name, {}, channel.unit if channel is not None else "")
     for at, columns in line.sensors.items():
-        found[at] = errors[..., [list(trial.measured).index(column) for column in columns]]
+        errors[at] = [list(trial.measured).index(column) for column in columns]
         readers[at] = Source(at, {}, known[trial.measured[columns[0]].channel].unit, columns=columns)
-    return Response({source.name: source for source in line.sources} | readers, found)
+    rotating = [source.name for source in line.sources if source.rotating]
+    return Response({source.name: source for source in line.sources} | readers, OfSources(line, spectra, acting, errors, rotating))

@@ -19,6 +19,7 @@ from hdrive_mbs.diagnosis.trial import Trial
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+Slopes = npt.NDArray[np.float32]
 
 HIGHEST, HIGHEST_OF_ROTORS = 0.25, 0.16
 """Of the sample rate: frequencies above it are left out."""
@@ -38,7 +39,8 @@ class Spectra:
         changes in them.  The squares add up to those of the samples below HIGHEST.
     frequencies : rad/s, (bins,);  bands : first bin of each band, an octave wide, or less for rotors
     whitening : what the spectrum of a residual is multiplied by, (windows, bins, columns, columns)
-    window : samples;  starts : first sample of each window;  slopes : what parameters change in the columns, by sample
+    window : samples;  starts : first sample of each window
+    slopes : what parameters change in the columns, by sample; differences, good to less than the digits that are kept
     """
 
     trial: Trial
@@ -48,7 +50,7 @@ class Spectra:
     whitening: ComplexArray
     window: int
     starts: npt.NDArray[np.int64]
-    slopes: FloatArray
+    slopes: Slopes
 
     @property
     def widths(self) -> npt.NDArray[np.int64]:
@@ -63,7 +65,7 @@ def spectra(
     motions: Sequence[Motion],
     lines: Sequence[Line],
     forces: Sequence[Sequence[KnownForce]] | None = None,
-    slopes: Sequence[FloatArray] | None = None,
+    slopes: Sequence[Slopes] | None = None,
 ) -> tuple[Spectra, ...]:
     """Of each trial at the full sample rate.
 
@@ -82,7 +84,7 @@ def spectra(
     for k, motion in enumerate(motions):
         trial = motion.trial
         whiten = lines[k].observer is None
-        rows = [_residuals(trial, motion.columns, whiten), *slopes[k]]
+        rows: list[FloatArray] = [_residuals(trial, motion.columns, whiten), *slopes[k].astype(float)]
         for number, column, size in sizes:
             row = np.zeros(rows[0].shape)
             if number == k:
@@ -101,7 +103,7 @@ def slopes_of(
     whiten: Sequence[bool],
     motions: Sequence[Motion],
     forces: Sequence[Sequence[KnownForce]] | None = None,
-) -> list[FloatArray]:
+) -> list[Slopes]:
     """What a unit of each search coordinate changes in the residuals of each trial, (parameters, columns, samples).
 
     Zero where that cannot be had.
@@ -120,7 +122,8 @@ def slopes_of(
         base = _residuals(motion.trial, motion.columns, whiten[k])
         found = columns_of(simulator, k, hypothesis, points, forces[k] if forces else ()) if plain is None else [item[k] for item in plain]
         rows = [None if item is None else _residuals(motion.trial, item, whiten[k]) for item in found]
-        made.append(np.array([np.zeros(base.shape) if row is None else (row - base) / step for row, step in zip(rows, steps, strict=True)]))
+        slopes = [np.zeros(base.shape) if row is None else (row - base) / step for row, step in zip(rows, steps, strict=True)]
+        made.append(np.array(slopes, np.float32))
     return made
 
 
@@ -134,7 +137,7 @@ def _whitened(measured: Measured, values: FloatArray) -> FloatArray:
     return Whitener(replace(measured, offset=0.0), np.ones(len(values), dtype=bool), steady=True)(values)
 
 
-def _of(motion: Motion, line: Line, rows: FloatArray, slopes: FloatArray) -> Spectra:
+def _of(motion: Motion, line: Line, rows: FloatArray, slopes: Slopes) -> Spectra:
     """rows : shape (1 + parameters and offsets, columns, samples)."""
     trial, observer = motion.trial, line.observer
     window = window_of(trial)
@@ -144,7 +147,9 @@ def _of(motion: Motion, line: Line, rows: FloatArray, slopes: FloatArray) -> Spe
     while 2 * edges[-1] < bins and (observer is None or edges[-1] < NARROW):
         edges.append(2 * edges[-1])
     bands = np.array(edges if observer is None else [*edges, *range(edges[-1] + NARROW, bins - NARROW // 2, NARROW)])
-    values = np.moveaxis(windowed(rows if observer is None else observer.errors(rows), window, bins), (0, 1), (3, 2))
+    if observer is not None:
+        rows = observer.errors(rows)
+    values = np.stack([np.moveaxis(windowed(row, window, bins), 0, 2) for row in rows], axis=-1)  # one by one: less memory at a time
     starts = window // 2 * (np.arange(len(values)) - 1)
     if observer is not None:  # what its errors hold of the noise before the end of a record shows whole in whole windows alone
         starts = starts[starts + window <= trial.samples]
