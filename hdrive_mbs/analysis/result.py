@@ -117,23 +117,41 @@ class Result:
     def export(self, path: str | os.PathLike[str]) -> Path:
         """Write the columns for other programs: .csv, .parquet, .h5 (HDF5) or .mat (MATLAB), by the suffix.
 
-        Units, status, settings, versions and the scene go with them (into CSV the units alone).  Parquet and HDF5 need
+        Units, ``made_from`` and ``checksum`` go with them (into CSV the units alone).  Parquet and HDF5 need
         ``hdrive-mbs[records]``.  Only ``save`` keeps everything and can be loaded again.
+
+        Raises FileFormatError for another suffix and DependencyError when a package for it is missing.
         """
         if Path(path).suffix.lower() == ".csv":
             return self.to_csv(path)
-        scene, problem = _packed_scene(self.scene)
+        origin = self.made_from()
         head = {
-            "result": type(self).__name__,
-            "status": self.status,
-            "settings": json.dumps(_pack(self.settings, "settings", {})),
-            "versions": json.dumps(dict(self.versions)),
-            "scene": json.dumps(scene) if scene is not None else problem,
+            "result": origin["result"],
+            "status": origin["status"],
+            "settings": json.dumps(origin["settings"]),
+            "versions": json.dumps(origin["versions"]),
+            "scene": json.dumps(origin["scene"]) if origin["scene"] is not None else _packed_scene(self.scene)[1],
+            "sha256": self.checksum(),
         }
         return write_table(path, table_of(self.columns(), head))
 
+    def checksum(self) -> str:
+        """SHA-256 over everything that ``save`` writes; it stands in the saved file, and in an exported one that is of the same result."""
+        checksum: str = self._saved_form()[0]["sha256"]
+        return checksum
+
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the whole result to one file (numpy archive with a JSON head and a checksum)."""
+        document, arrays = self._saved_form()
+        packed = np.frombuffer(json.dumps(document).encode(), dtype=np.uint8)
+
+        def write(file: BinaryIO) -> None:
+            np.savez_compressed(file, head=packed, **arrays)  # type: ignore[arg-type]
+
+        return write_whole(path, write)
+
+    def _saved_form(self) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+        """Head with checksum, and arrays, of the saved file."""
         arrays: dict[str, np.ndarray] = {}
         fields = {item.name: getattr(self, item.name) for item in dataclasses.fields(self) if item.name != "scene"}
         head = {name: _pack(value, name, arrays) for name, value in fields.items()}
@@ -145,13 +163,7 @@ class Result:
             "scene": scene,
             "scene_problem": problem,
         }
-        document["sha256"] = _checksum(document, arrays)
-        packed = np.frombuffer(json.dumps(document).encode(), dtype=np.uint8)
-
-        def write(file: BinaryIO) -> None:
-            np.savez_compressed(file, head=packed, **arrays)  # type: ignore[arg-type]
-
-        return write_whole(path, write)
+        return {**document, "sha256": _checksum(document, arrays)}, arrays
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, verify: bool = True) -> Self:

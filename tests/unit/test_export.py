@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import json
 import sys
 from pathlib import Path
@@ -15,6 +16,7 @@ import hdrive_mbs as hm
 from hdrive_mbs.errors import DependencyError, FileFormatError
 from hdrive_mbs.export.matlab import LONGEST, identifiers
 from hdrive_mbs.export.table import table_of
+from hdrive_mbs.scene_file import scene_from_dict
 from models.harmonic_drive_train import build
 
 
@@ -39,9 +41,49 @@ def test_parquet_keeps_numbers_to_the_last_bit_units_and_how_it_was_made(respons
     head = table.schema.metadata
     assert head[b"hdrive_mbs.result"] == b"Response"
     assert json.loads(head[b"hdrive_mbs.versions"])["exudyn"] == response.versions["exudyn"]
-    from hdrive_mbs.scene_file import scene_from_dict
-
     assert scene_from_dict(json.loads(head[b"hdrive_mbs.scene"])) == build()
+
+
+def head_of(file: Path) -> dict[str, str]:
+    """What a file says of its result, by the reader of its format alone."""
+    if file.suffix == ".parquet":
+        parquet = pytest.importorskip("pyarrow.parquet", reason="pyarrow comes with the records extra")
+        return {name.decode(): text.decode() for name, text in parquet.read_schema(file).metadata.items()}
+    if file.suffix == ".h5":
+        h5py = pytest.importorskip("h5py", reason="h5py comes with the records extra")
+        with h5py.File(file) as found:
+            long = {name: data[()].decode() for name, data in found.items() if name.startswith("hdrive_mbs.")}
+            return {**found.attrs, **long}
+    head = loadmat(file, squeeze_me=True, struct_as_record=False)["hdrive_mbs"]
+    return {f"hdrive_mbs.{name}": str(getattr(head, name)) for name in head._fieldnames}
+
+
+@pytest.mark.parametrize("suffix", ["parquet", "h5", "mat"])
+@pytest.mark.parametrize("notes", ["", "x" * 100_000], ids=["short", "longer_than_an_attribute_of_hdf5"])
+def test_every_format_holds_the_whole_origin_and_the_checksum_of_the_saved_result(tmp_path: Path, suffix: str, notes: str) -> None:
+    train = build()
+    scene = hm.Scene(name=train.name, parts=train.parts, connections=train.connections, effects=train.effects, notes=notes)
+    curve = hm.torsion(scene, [20.0, 40.0])
+    saved = hm.load(curve.save(tmp_path / "curve.npz"))
+    head = head_of(saved.export(tmp_path / f"curve.{suffix}"))
+    assert set(head) == {f"hdrive_mbs.{name}" for name in ("result", "status", "settings", "versions", "scene", "sha256")}
+    told = {name: json.loads(head[f"hdrive_mbs.{name}"]) for name in ("settings", "versions", "scene")}
+    assert {"result": head["hdrive_mbs.result"], "status": head["hdrive_mbs.status"], **told} == curve.made_from()
+    assert scene_from_dict(told["scene"]) == scene
+    with np.load(tmp_path / "curve.npz") as archive:
+        written = json.loads(bytes(archive["head"]))
+    assert head["hdrive_mbs.sha256"] == written["sha256"] == curve.checksum()
+
+
+@pytest.mark.parametrize("suffix", ["parquet", "h5", "mat"])
+def test_numbers_in_the_settings_are_written_and_other_numbers_have_another_checksum(
+    campaign: hm.Campaign, tmp_path: Path, suffix: str
+) -> None:
+    asked = dataclasses.replace(campaign, settings={"speeds": np.array([0.0, 100.0])})
+    head = head_of(asked.export(tmp_path / f"asked.{suffix}"))
+    assert json.loads(head["hdrive_mbs.settings"]) == {"speeds": [0.0, 100.0]}
+    other = dataclasses.replace(asked, settings={"speeds": np.array([0.0, 101.0])})
+    assert head_of(other.export(tmp_path / f"other.{suffix}"))["hdrive_mbs.sha256"] != head["hdrive_mbs.sha256"]
 
 
 @pytest.mark.parametrize("suffix", ["parquet", "h5", "mat", "csv"])
