@@ -53,14 +53,18 @@ class JobFiles:
             return None  # it is run again, and the file written anew
         return Outcome(values=job.values, seconds=job.seconds, worker=job.worker, versions=job.versions, attempts=job.attempts)
 
-    def write(self, key: str, name: str, point: Point, outcome: Outcome) -> None:
-        """Keep a finished job; one that failed is not kept."""
+    def write(self, key: str, settings: Mapping[str, Any], point: Point, outcome: Outcome) -> None:
+        """Keep a finished job; one that failed is not kept.
+
+        settings : of the function, as the campaign has them.  The scene stands in the campaign's own file alone: put
+            together anew for each job that is found, it would take longer than many a job
+        """
         if self.folder is None or outcome.values is None:
             return
         FinishedJob(
             scene=None,
             status="complete",
-            settings={"function": name, "key": key},
+            settings={**settings, "key": key},
             versions=outcome.versions,
             parameters=dict(point),
             values=outcome.values,

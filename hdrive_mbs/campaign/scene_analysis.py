@@ -41,6 +41,11 @@ class SceneAnalysis:
         """Unit of every number of the scene that has one."""
         return {path: item.unit for path, item in self.scene.parameters().items() if item.unit != "1"}
 
+    def made_of(self) -> tuple[Scene, dict[str, Any]]:
+        """The scene before any value of a point is put in, and the analysis with its options."""
+        name = self.analysis if isinstance(self.analysis, str) else getattr(self.analysis, "__qualname__", type(self.analysis).__name__)
+        return self.scene, {"analysis": name, "options": dict(self.options)}
+
     def check(self, point: Mapping[str, Any]) -> None:
         """Raise PlaceError or ParameterError at once for a path that the scene does not have."""
         try:

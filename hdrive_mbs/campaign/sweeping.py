@@ -15,10 +15,12 @@ from hdrive_mbs.campaign.campaign import Campaign
 from hdrive_mbs.campaign.fingerprint import fingerprint, job_key
 from hdrive_mbs.campaign.in_this_process import run_here
 from hdrive_mbs.campaign.job_files import JobFiles
+from hdrive_mbs.campaign.origin import made_of
 from hdrive_mbs.campaign.outcome import Outcome
 from hdrive_mbs.campaign.points import Point, checked, parameter_columns
 from hdrive_mbs.errors import ParameterError, SimulationError
 from hdrive_mbs.progress import progress_bar
+from hdrive_mbs.scene import Scene
 
 
 def sweep(
@@ -53,6 +55,10 @@ def sweep(
     it again.  Ctrl-C, or a cluster that is lost, stops and returns what is finished, which the status says.  The result
     does not depend on the number of workers as long as the function depends on its point alone: draw random numbers
     from a seed in the point.
+
+    An object may have methods beside: ``check(point)`` raises for a point that no job can take, ``units()`` gives the unit
+    of a name, ``made_of()`` the scene (or None) and the settings that the campaign was made of; its name and fingerprint are
+    among the settings of every campaign.
     """
     plain = checked(points)
     if retries < 0 or (workers is not None and workers < 1):
@@ -60,7 +66,9 @@ def sweep(
     name = _name(function)
     if hasattr(function, "check"):
         function.check(plain[0])
-    keys = [job_key(found, point) for found in [fingerprint(function)] for point in plain]
+    found = fingerprint(function)
+    keys = [job_key(found, point) for point in plain]
+    scene, asked = made_of(function, name, found)
     files = JobFiles(folder=None if folder is None else Path(folder))
     outcomes: dict[str, Outcome] = {}
     jobs: dict[str, Point] = {}
@@ -82,7 +90,7 @@ def sweep(
             try:
                 for done, (key, outcome) in enumerate(arriving, start=1):
                     outcomes[key] = outcome
-                    files.write(key, name, jobs[key], outcome)
+                    files.write(key, asked, jobs[key], outcome)
                     if arrived is not None and outcome.values is not None:
                         arrived(jobs[key], outcome.values)
                     if report is not None:
@@ -102,8 +110,9 @@ def sweep(
         reused,
         units=dict(units if units is not None else getattr(function, "units", dict)()),
         stopped=stopped,
+        scene=scene,
         settings={
-            "function": name,
+            **asked,
             "executor": executor if isinstance(executor, str) else type(executor).__name__,
             "workers": workers,
             "folder": None if folder is None else str(folder),
@@ -160,6 +169,7 @@ def _campaign(
     *,
     units: Mapping[str, str],
     stopped: str,
+    scene: Scene | None,
     settings: Mapping[str, Any],
 ) -> Campaign:
     found = [outcomes.get(key) for key in keys]
@@ -175,7 +185,7 @@ def _campaign(
     if failures:
         words.append(f"{len(failures)} of {len(keys)} jobs failed, see failures")
     return Campaign(
-        scene=None,
+        scene=scene,
         status="; ".join(words) or "complete",
         settings=settings,
         parameters=parameter_columns(points),

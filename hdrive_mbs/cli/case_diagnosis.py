@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class GivenFile:
-    """A Python file that each worker opens under the same path, and the hash of its text."""
+    """A Python file that each worker opens under the same path, and the hash of its name and text."""
 
     path: str
     sha256: str
@@ -88,6 +88,20 @@ class CaseDiagnosis:
         kept = Path(self.work) / str(point["case"]) if Path(self.work).is_dir() else None
         result = run(bench, measured, candidates=_living(kinds), workers=1, folder=kept)
         return {**figures(result), "report": report_files(result)}
+
+    def made_of(self) -> tuple[Scene, dict[str, Any]]:
+        """The nominal scene, and the files with their digests and how records are read; the records are in the points."""
+        settings = {
+            "effects": tuple({"file": item.path, "digest": item.sha256} for item in self.effects),
+            "only": self.only,
+            "reading": dict(self.reading),
+            "program": self.program,
+        }
+        if isinstance(self.bench, Scene):
+            return self.bench, settings
+        bench = open_bench(Path(self.bench.path))
+        scene = bench if isinstance(bench, Scene) else bench.scene
+        return scene, {"bench": {"file": self.bench.path, "digest": self.bench.sha256}, **settings}
 
 
 def figures(result: Diagnosis) -> dict[str, Any]:

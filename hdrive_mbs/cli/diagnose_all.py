@@ -101,9 +101,9 @@ def document(result: Campaign) -> dict[str, Any]:
         "cases": len(result),
         "done": int(result.done.sum()),
         "reused": result.reused,
-        "versions": dict(result.versions),
         "columns": result.columns(),
         "failures": [dict(failure) for failure in result.failures],
+        "origin": result.made_from(),
     }
 
 

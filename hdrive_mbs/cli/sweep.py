@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -32,12 +33,12 @@ if TYPE_CHECKING:
 class SceneFileAnalysis:
     """A scene file opened anew with the values of a point, and analysed: for scenes whose code only the file holds.
 
-    digest : of the texts of the file and of ``own``, so that a changed file makes another job
+    sha256 : of the file and of those in ``own``, by their paths, so that a changed file makes another job
     own : files with effect classes
     """
 
     path: str
-    digest: str
+    sha256: Mapping[str, str]
     settings: tuple[str, ...]
     effects: tuple[str, ...]
     own: tuple[str, ...]
@@ -62,6 +63,18 @@ class SceneFileAnalysis:
     def units(self) -> dict[str, str]:
         """Unit of every number of the scene that has one."""
         return dict(self.known_units)
+
+    def made_of(self) -> tuple[Scene, dict[str, Any]]:
+        """The scene before any value of a point is put in, and the file, its digest and what the command was given."""
+        return self._scene({}), {
+            "file": self.path,
+            "sha256": dict(self.sha256),
+            "set": self.settings,
+            "effect": self.effects,
+            "effects": self.own,
+            "analysis": self.analysis,
+            "options": dict(self.options),
+        }
 
 
 def sweep(
@@ -118,13 +131,13 @@ def sweep(
     plain = SceneAnalysis(scene=chosen, analysis=analysis, options=options)  # checks the options too
     task: Any = plain
     if not _travels(plain, points[0]):
-        digest = _digest([scene, *(effects or ())])
+        files = [file.resolve() for file in (scene, *(effects or ()))]
         task = SceneFileAnalysis(
-            path=str(scene.resolve()),
-            digest=digest,
+            path=str(files[0]),
+            sha256={str(file): hashlib.sha256(file.read_bytes()).hexdigest() for file in files},
             settings=tuple(set_ or ()),
             effects=tuple(effect or ()),
-            own=tuple(str(file.resolve()) for file in effects or ()),
+            own=tuple(str(file) for file in files[1:]),
             analysis=analysis,
             options=options,
             known_units=plain.units(),
@@ -182,8 +195,7 @@ def document(result: Campaign, table: str) -> dict[str, Any]:
         "columns": result.columns(),
         "failures": [dict(failure) for failure in result.failures],
         "table": table,
-        "settings": dict(result.settings),
-        "versions": dict(result.versions),
+        "origin": result.made_from(),
     }
 
 
@@ -222,12 +234,6 @@ def tell_failures(failures: Sequence[Mapping[str, Any]], folder: Path, of: Calla
     write_text(file, "\n".join(line + failure["traceback"] for line, failure in zip(told, failures, strict=True)))
     print(on_command_line("".join(told[:10])), end="", file=sys.stderr)
     print(f"{len(failures)} failed; all of them with traceback: {file}", file=sys.stderr)
-
-
-def _digest(paths: Sequence[Path]) -> str:
-    import hashlib
-
-    return hashlib.sha256(b"".join(hashlib.sha256(path.read_bytes()).digest() for path in paths)).hexdigest()
 
 
 def _print(name: str, result: Campaign, table: Path) -> None:

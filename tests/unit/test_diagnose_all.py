@@ -17,13 +17,14 @@ import pytest
 from typer.testing import CliRunner
 
 from hdrive_mbs.campaign import sweeping
+from hdrive_mbs.campaign.job_files import FinishedJob
 from hdrive_mbs.campaign.sweeping import sweep
-from hdrive_mbs.cli.case_diagnosis import cases_in
+from hdrive_mbs.cli.case_diagnosis import cases_in, content_hash
 from hdrive_mbs.cli.main import app
 from hdrive_mbs.diagnosis import diagnose as search
 from hdrive_mbs.diagnosis.report_json import read_report_json
 from hdrive_mbs.errors import FileFormatError
-from hdrive_mbs.scene_file import load_scene, save_scene
+from hdrive_mbs.scene_file import load_scene, save_scene, scene_from_dict
 from models import drive_bench
 from tests.unit.diagnosis_samples import SAMPLES
 from tests.unit.test_campaign_cluster import scheduler, start
@@ -94,7 +95,11 @@ def test_every_case_gets_its_report_and_the_table_a_line(bench: Path, tmp_path: 
     found = json.loads(done.stdout)
     assert found["columns"]["case"] == ["a", "b"]
     assert found["columns"]["verdict"] == ["effect", "effect"]
-    assert found["versions"]["hdrive-mbs"]
+    origin = found["origin"]
+    assert origin["versions"]["hdrive-mbs"]
+    assert scene_from_dict(origin["scene"]) == drive_bench.build()
+    assert origin["settings"]["bench"] == {"file": str(bench), "digest": content_hash([bench])}
+    assert origin["settings"]["reading"]["repair"] is None
     answer = SAMPLES["without_pictures"]()
     for name in ("a", "b"):
         assert read_report_json(out / name / "diagnosis.json")["verdict"] == answer.verdict
@@ -228,3 +233,8 @@ def test_the_scene_of_a_scene_file_is_sent_itself(tmp_path: Path, monkeypatch: p
     words = (str(file), "--records", str(cases(tmp_path / "set", "a")), "--out", str(tmp_path / "out"))
     assert invoke(*words).exit_code == 0
     assert calls == [drive_bench.build()]
+    (job,) = (tmp_path / "out" / "jobs").glob("*.npz")
+    told = FinishedJob.load(job).settings
+    assert told["function"] == "CaseDiagnosis"
+    assert told["fingerprint"]
+    assert "bench" not in told, "it is the scene itself"
