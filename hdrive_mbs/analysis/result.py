@@ -22,7 +22,7 @@ from typing import Any, BinaryIO, Self
 import numpy as np
 
 from hdrive_mbs.errors import FileFormatError, HdriveError
-from hdrive_mbs.export.formats import write_table
+from hdrive_mbs.export.formats import write_table, writer_for
 from hdrive_mbs.export.table import table_of
 from hdrive_mbs.memory_limit import check_claim
 from hdrive_mbs.printed_table import PrintedTable
@@ -172,6 +172,12 @@ class Result:
         if not isinstance(result, cls):
             raise FileFormatError(f"{path} holds a {type(result).__name__}, not a {cls.__name__}.")
         return result
+
+
+def check_export(path: str | os.PathLike[str]) -> None:
+    """Raise what ``export`` to this file would raise for its suffix or a missing package, before there is a result."""
+    if Path(path).suffix.lower() != ".csv":
+        writer_for(path)
 
 
 def write_csv(path: str | os.PathLike[str], columns: Mapping[str, np.ndarray]) -> Path:

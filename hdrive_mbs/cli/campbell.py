@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
-from hdrive_mbs.cli.output import print_tables, write_json
+from hdrive_mbs.cli.options import EffectFiles, Effects, ExportFiles, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.output import print_tables, write_exports, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.cli.speeds import parse_orders, parse_speeds
 
@@ -28,6 +28,7 @@ def campbell(
     ] = "1",
     count: Annotated[int | None, typer.Option(help="Number of branches; by default all near the highest order line.")] = None,
     out: OutFolder = None,
+    export: ExportFiles = None,
     json: JsonFile = None,
 ) -> None:
     """Damped frequencies, damping and whirl over speed; critical speeds and stability thresholds."""
@@ -43,6 +44,7 @@ def campbell(
         result.to_csv(out / "campbell.csv")
         write_csv(out / "critical_speeds.csv", result.critical_columns())
         save_figure(plot(result), out / "campbell")
+    write_exports(result, export)
     write_json(json, {**document(result), "origin": result.made_from()})
     if json != "-":
         print_tables(chosen.name, result.status, result.tables())

@@ -12,8 +12,8 @@ import typer
 
 from hdrive_mbs.cli.case_diagnosis import CaseDiagnosis, GivenFile, cases_in, content_hash
 from hdrive_mbs.cli.diagnose import WORK, open_bench, tried
-from hdrive_mbs.cli.options import JsonFile
-from hdrive_mbs.cli.output import print_table, write_json
+from hdrive_mbs.cli.options import ExportFiles, JsonFile
+from hdrive_mbs.cli.output import print_table, write_exports, write_json
 from hdrive_mbs.cli.records_options import BenchFile, Channels, Only, OwnEffects, Repairs, TimeColumn, Units, reading_of
 from hdrive_mbs.cli.sweep import cell, tell_failures
 from hdrive_mbs.scene import Scene
@@ -47,6 +47,7 @@ def diagnose_all(
     ] = None,
     retries: Annotated[int, typer.Option(help="How often a case is begun again whose worker was lost.")] = 2,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder with a folder for each case, and the table.")] = None,
+    export: ExportFiles = None,
     json: JsonFile = None,
 ) -> None:
     """Diagnose every case with one bench; a case that fails does not stop the others, and the same command goes on."""
@@ -77,6 +78,7 @@ def diagnose_all(
 
     result = sweep(task, points, executor=scheduler or "processes", workers=workers, folder=folder, retries=retries, arrived=arrived)
     table = result.to_csv(folder / "diagnoses.csv")
+    write_exports(result, export)
     write_json(json, document(result))
     if json != "-":
         _print(result, table)

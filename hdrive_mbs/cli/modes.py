@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
-from hdrive_mbs.cli.output import print_tables, write_json
+from hdrive_mbs.cli.options import EffectFiles, Effects, ExportFiles, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.output import print_tables, write_exports, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ def modes(
     ] = None,
     count: Annotated[int, typer.Option(help="Number of modes of a rotor line.")] = 12,
     out: OutFolder = None,
+    export: ExportFiles = None,
     json: JsonFile = None,
 ) -> None:
     """Natural frequencies, damping ratios and mode shapes of the linearised scene."""
@@ -33,7 +34,7 @@ def modes(
 
     chosen = open_scene(scene, set_ or (), effect or (), effects or ())
     if chosen.network().is_lateral:
-        _whirl_modes(chosen, torque, speed, count, out, json)
+        _whirl_modes(chosen, torque, speed, count, out, export, json)
         return
     result = analyse(chosen, torque=torque, motor_speed=speed)
     if out is not None:
@@ -42,6 +43,7 @@ def modes(
         result.save(out / "modes.npz")
         result.to_csv(out / "modes.csv")
         save_figure(plot(result), out / "modes")
+    write_exports(result, export)
     write_json(
         json,
         {
@@ -62,7 +64,9 @@ def modes(
         print_tables(chosen.name, result.status, result.tables())
 
 
-def _whirl_modes(scene: Scene, torque: float | None, speed: float | None, count: int, out: Path | None, json: str | None) -> None:
+def _whirl_modes(
+    scene: Scene, torque: float | None, speed: float | None, count: int, out: Path | None, export: list[Path] | None, json: str | None
+) -> None:
     from hdrive_mbs.analysis.operating_point import with_load
     from hdrive_mbs.analysis.whirl.whirl_modes import whirl_modes
 
@@ -75,6 +79,7 @@ def _whirl_modes(scene: Scene, torque: float | None, speed: float | None, count:
         save_figure(plot(result), out / "modes")
     fields = zip(result.whirl, result.frequencies, result.natural, result.damping_ratios, result.log_decrements, strict=True)
     rows = [list(row) for row in fields]
+    write_exports(result, export)
     write_json(
         json,
         {

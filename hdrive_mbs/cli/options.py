@@ -7,6 +7,16 @@ from typing import Annotated
 
 import typer
 
+from hdrive_mbs.analysis.result import check_export
+
+
+def _exportable(files: list[Path] | None) -> list[Path] | None:
+    """The same files.  Raises FileFormatError or DependencyError for one that nothing can be written to, before any computation."""
+    for file in files or ():
+        check_export(file)
+    return files
+
+
 ScenePath = Annotated[Path, typer.Argument(metavar="SCENE", help="A .py file with build() -> Scene, or a .toml or .json scene file.")]
 Settings = Annotated[
     list[str] | None,
@@ -22,3 +32,12 @@ EffectFiles = Annotated[
 ]
 JsonFile = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write figures as JSON ('-' for stdout).")]
 OutFolder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for results and pictures.")]
+ExportFiles = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--export",
+        metavar="FILE",
+        callback=_exportable,
+        help="Write the table for other programs; the ending .csv, .parquet, .h5 or .mat chooses (several times).",
+    ),
+]

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.printed_table import PrintedTable, cell, is_number
 from hdrive_mbs.writing import write_text
 
@@ -41,6 +42,12 @@ def _clean(value: Any) -> Any:
     if isinstance(value, np.integer):
         return int(value)
     return value
+
+
+def write_exports(result: Result, files: Iterable[Path] | None) -> None:
+    """The table of a result into the files of --export."""
+    for file in files or ():
+        result.export(file)
 
 
 def print_tables(name: str, status: str, tables: Sequence[PrintedTable]) -> None:

@@ -9,8 +9,8 @@ from typing import Annotated
 
 import typer
 
-from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
-from hdrive_mbs.cli.output import print_tables, write_json
+from hdrive_mbs.cli.options import EffectFiles, Effects, ExportFiles, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.output import print_tables, write_exports, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.engine import solvers
 from hdrive_mbs.engine.solvers import Solver
@@ -36,6 +36,7 @@ def run(
     plot: Annotated[list[str] | None, typer.Option(help="Channels to draw (several times); a choice is made if not given.")] = None,
     csv: Annotated[bool, typer.Option("--csv", help="Write the histories as CSV too.")] = False,
     out: OutFolder = None,
+    export: ExportFiles = None,
     json: JsonFile = None,
 ) -> None:
     """Simulate a scene on Exudyn; write the result, a picture and summary figures."""
@@ -53,6 +54,7 @@ def run(
     pictures = save_figure(draw(response, channels=plot or None), folder / "response")
     table = response.to_csv(folder / "response.csv") if csv else None
     summary = response.summary()
+    write_exports(response, export)
     write_json(
         json,
         {

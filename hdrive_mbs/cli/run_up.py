@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
-from hdrive_mbs.cli.output import print_tables, write_json
+from hdrive_mbs.cli.options import EffectFiles, Effects, ExportFiles, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.output import print_tables, write_exports, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ def run_up(
     estimate_error: Annotated[bool, typer.Option("--estimate-error", help="Run again with half the step and state the error.")] = False,
     csv: Annotated[bool, typer.Option("--csv", help="Write the histories as CSV too.")] = False,
     out: OutFolder = None,
+    export: ExportFiles = None,
     json: JsonFile = None,
 ) -> None:
     """Peak amplitude of each rotor and its speed, and the final speed; choose a bearing model with --set bearing=improved."""
@@ -47,6 +48,7 @@ def run_up(
     pictures = save_figure(plot(result), folder / name)
     table = result.to_csv(folder / f"{name}.csv") if csv else None
     files = {"result": str(saved), "csv": None if table is None else str(table), "pictures": [str(path) for path in pictures]}
+    write_exports(result, export)
     write_json(json, {"scene": chosen.name, **figures(result), **files, "origin": result.made_from()})
     if json != "-":
         print_tables(chosen.name, result.status, result.tables())

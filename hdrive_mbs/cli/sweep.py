@@ -15,8 +15,8 @@ import numpy as np
 import typer
 
 from hdrive_mbs.campaign.points import shown
-from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, ScenePath, Settings
-from hdrive_mbs.cli.output import print_table, write_json
+from hdrive_mbs.cli.options import EffectFiles, Effects, ExportFiles, JsonFile, ScenePath, Settings
+from hdrive_mbs.cli.output import print_table, write_exports, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.cli.speeds import parse_orders, parse_speeds
 from hdrive_mbs.cli.wording import on_command_line
@@ -105,6 +105,7 @@ def sweep(
     ] = None,
     retries: Annotated[int, typer.Option(help="How often a job is begun again whose worker was lost.")] = 2,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the campaign: jobs, result and table.")] = None,
+    export: ExportFiles = None,
     json: JsonFile = None,
 ) -> None:
     """Run an analysis for every combination of values, on processes or a cluster; the same command with the same --out goes on."""
@@ -146,6 +147,7 @@ def sweep(
     result = run(task, points, executor=scheduler or "processes", workers=workers, folder=folder, retries=retries)
     result.save(folder / "campaign.npz")
     table = result.to_csv(folder / "campaign.csv")
+    write_exports(result, export)
     write_json(json, document(result, str(table)))
     if json != "-":
         _print(chosen.name, result, table)

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
-from hdrive_mbs.cli.output import print_tables, write_json
+from hdrive_mbs.cli.options import EffectFiles, Effects, ExportFiles, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.output import print_tables, write_exports, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.errors import ParameterError
 
@@ -22,6 +22,7 @@ def torsion(
     torques: Annotated[str | None, typer.Option(metavar="T,T,...", help="Torques [N m].")] = None,
     largest: Annotated[float | None, typer.Option(help="Largest torque of an even grid [N m].")] = None,
     out: OutFolder = None,
+    export: ExportFiles = None,
     json: JsonFile = None,
 ) -> None:
     """Torque against angle with the input held, as a gear catalogue measures it."""
@@ -40,6 +41,7 @@ def torsion(
         result.save(out / "torsion.npz")
         result.to_csv(out / "torsion.csv")
         save_figure(plot(result), out / "torsion")
+    write_exports(result, export)
     write_json(json, {"torque": result.torque, "angle": result.angle, "origin": result.made_from()})
     if json != "-":
         print_tables(chosen.name, result.status, result.tables())

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 import typer
 
-from hdrive_mbs.cli.options import EffectFiles, Effects, JsonFile, OutFolder, ScenePath, Settings
-from hdrive_mbs.cli.output import print_tables, write_json
+from hdrive_mbs.cli.options import EffectFiles, Effects, ExportFiles, JsonFile, OutFolder, ScenePath, Settings
+from hdrive_mbs.cli.output import print_tables, write_exports, write_json
 from hdrive_mbs.cli.scene_source import open_scene
 from hdrive_mbs.cli.speeds import parse_speeds
 from hdrive_mbs.errors import ParameterError, unknown_place
@@ -32,6 +32,7 @@ def unbalance(
         list[str] | None, typer.Option("--extra", metavar="PLACE=KG_M@RAD", help="Trial mass, e.g. rotor_2=1e-5@0.5 (several times).")
     ] = None,
     out: OutFolder = None,
+    export: ExportFiles = None,
     json: JsonFile = None,
 ) -> None:
     """Amplitude and phase of steady whirl over speed; every amplitude is 0-peak."""
@@ -52,6 +53,7 @@ def unbalance(
         drawn = None if places is None else list(wanted)
         for view in ("bode", "polar", "orbits", *(("forces",) if result.bearings else ())):
             save_figure(plot(result, view=view, places=None if view == "forces" else drawn), out / f"unbalance_{view}")
+    write_exports(result, export)
     write_json(json, {**_document(result, wanted), "origin": result.made_from()})
     if json != "-":
         (table,) = result.tables()

@@ -28,12 +28,17 @@ def write_table(path: str | os.PathLike[str], table: Table) -> Path:
 
     Raises FileFormatError for another suffix and DependencyError when the package for it is missing.
     """
-    target = Path(path)
-    if target.suffix.lower() not in WRITERS:
+    return writer_for(path)(Path(path), table)
+
+
+def writer_for(path: str | os.PathLike[str]) -> Writer:
+    """The writer of a file; nothing is written yet.  Raises like ``write_table``."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in WRITERS:
         raise FileFormatError(f"{path}: a table is written as .csv, {', '.join(WRITERS)}.")
-    write, needed = WRITERS[target.suffix.lower()]
+    write, needed = WRITERS[suffix]
     try:
         importlib.import_module(needed)
     except ImportError:
         raise DependencyError(f'{path}: writing this needs {needed}: python -m pip install "hdrive-mbs[records]".') from None
-    return write(target, table)
+    return write
