@@ -18,10 +18,11 @@ from hdrive_mbs.cli.options import JsonFile
 from hdrive_mbs.cli.output import write_json
 from hdrive_mbs.cli.python_file import imported, lines_named, own_types
 from hdrive_mbs.cli.records_options import BenchFile, Channels, HeldOut, Only, OwnEffects, Repairs, TimeColumn, Units, reading_of
+from hdrive_mbs.cli.scene_source import load_file
 from hdrive_mbs.cli.stages import stage_bars
 from hdrive_mbs.errors import FileFormatError, HdriveError, SceneError, unknown_place
 from hdrive_mbs.scene import Scene
-from hdrive_mbs.scene_file import load_scene, save_scene
+from hdrive_mbs.scene_file import save_scene
 from hdrive_mbs.writing import write_text
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ def open_bench(path: Path, own: Sequence[Path] = ()) -> Bench | Scene:
     Raises FileFormatError or SceneError for a file that gives neither.
     """
     if path.suffix.lower() in (".toml", ".json"):
-        return load_scene(path, [kind for file in own for kind in own_types(file)])
+        return load_file(path, [kind for file in own for kind in own_types(file)])
     module = imported(path, "a .py file with bench() -> Bench or build() -> Scene, or a .toml or .json scene")
     from hdrive_mbs.diagnosis.bench import Bench
 

@@ -16,6 +16,7 @@ from hdrive_mbs.cli import (
     diagnose,
     diagnose_all,
     effects,
+    from_ross,
     modes,
     run,
     run_up,
@@ -56,6 +57,7 @@ app.command()(unbalance.unbalance)
 app.command()(campbell.campbell)
 app.command()(run_up.run_up)
 app.command()(animate.animate)
+app.command()(from_ross.from_ross)
 app.command()(sweep.sweep)
 app.command()(diagnose.diagnose)
 app.command()(diagnose_all.diagnose_all)

@@ -17,7 +17,10 @@ def _exportable(files: list[Path] | None) -> list[Path] | None:
     return files
 
 
-ScenePath = Annotated[Path, typer.Argument(metavar="SCENE", help="A .py file with build() -> Scene, or a .toml or .json scene file.")]
+ScenePath = Annotated[
+    Path,
+    typer.Argument(metavar="SCENE", help="A .py file with build() -> Scene, a .toml or .json scene file, or a rotor saved by ROSS."),
+]
 Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="PATH=VALUE", help="Change a value, e.g. motor.inertia=2e-3 or 'gear.stiffness.lost_motion=3 arcmin'."),

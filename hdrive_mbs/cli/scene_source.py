@@ -1,4 +1,4 @@
-"""Scenes for the command line: SCENE.py with build(), or a scene file, with --set and --effect."""
+"""Scenes for the command line: SCENE.py with build(), a scene file or a rotor saved by ROSS, with --set and --effect."""
 
 from __future__ import annotations
 
@@ -6,22 +6,25 @@ import dataclasses
 import importlib.util
 import inspect
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from hdrive_mbs.cli.python_file import own_types
+from hdrive_mbs.documents import read_document
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import FileFormatError, ParameterError, SceneError, unknown_place
+from hdrive_mbs.quantities import Described
 from hdrive_mbs.quantity import Quantity
+from hdrive_mbs.ross_file.reading import is_rotor, load_ross
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.scene_file import all_types, load_scene, parse_setting
 from hdrive_mbs.units import to_si
 
 
 def open_scene(path: Path, settings: Sequence[str] = (), effects: Sequence[str] = (), own: Sequence[Path] = ()) -> Scene:
-    """The scene of a .py file (its ``build()``) or of a .toml or .json file, with changes applied.
+    """The scene of a .py file (its ``build()``) or of a .toml or .json file (``load_file``), with changes applied.
 
     settings : ``PATH=VALUE``; a name without a dot that is an argument of build() is passed to it; values of
         effects are set too, those of ``effects`` among them
@@ -32,7 +35,7 @@ def open_scene(path: Path, settings: Sequence[str] = (), effects: Sequence[str] 
     if path.suffix == ".py":
         scene, rest = _build(path, settings)
     else:
-        scene, rest = load_scene(path, kinds), list(settings)
+        scene, rest = load_file(path, kinds), list(settings)
     for text in effects:
         effect, place = parse_effect(text)
         scene = scene.with_effect(effect, at=place)
@@ -40,6 +43,16 @@ def open_scene(path: Path, settings: Sequence[str] = (), effects: Sequence[str] 
         name, value = parse_setting(scene, text)
         scene = scene.replacing({name: value})
     return scene
+
+
+def load_file(path: Path, types: Iterable[type[Described]] = ()) -> Scene:
+    """The scene of a .toml or .json file, which holds a scene of ours or a rotor saved by ROSS: its content says which.
+
+    types : classes of a user's own that a scene names
+
+    Raises FileFormatError for a rotor with anything that does not map, and lists all of it.
+    """
+    return load_ross(path) if is_rotor(read_document(path)) else load_scene(path, types)
 
 
 def module_of(path: Path) -> ModuleType:

@@ -17,6 +17,10 @@ _RULES: tuple[tuple[re.Pattern[str], Callable[[re.Match[str]], str]], ...] = (
     (re.compile(r"\bchannels=\{(.*?)\}"), lambda found: _options("--channel", found.group(1), "PLACE.QUANTITY")),
     (re.compile(rf"\b({_REPAIRS})='(\w+)'"), lambda found: f"--repair {found.group(1)}={found.group(2)}"),
     (re.compile(r"\blongest=(\d+)"), lambda found: f"--repair longest={found.group(1)}"),
+    (
+        re.compile(r"""\bleave_out=\[(['"])(.*?)\1, \.\.\.\]"""),
+        lambda found: f"hdrive-mbs from-ross FILE --leave-out {shlex.quote(found.group(2))} ... --out SCENE.toml",
+    ),
     (re.compile(r"\btime='\.\.\.'"), lambda found: "--time COLUMN"),
     (re.compile(r"\btime='([^']+)'"), lambda found: f"--time {shlex.quote(found.group(1))}"),
     (re.compile(r"\btime=2e-4 \(s\)"), lambda found: "--time '5 kHz'"),

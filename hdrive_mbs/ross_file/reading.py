@@ -56,6 +56,11 @@ def load_ross(path: str | os.PathLike[str], *, leave_out: Sequence[str] = (), na
 
     Raises FileFormatError for a file that is damaged or no rotor of ROSS, and one that lists all that does not map.
     """
+    return read_rotor(path, leave_out=leave_out, name=name)[0]
+
+
+def read_rotor(path: str | os.PathLike[str], *, leave_out: Sequence[str] = (), name: str | None = None) -> tuple[Scene, tuple[str, ...]]:
+    """``load_ross``, and what was left out of the scene, with the reason of each."""
     source = Path(path)
     document = _document(source)
     problems = Problems(leave_out)
@@ -81,11 +86,17 @@ def load_ross(path: str | os.PathLike[str], *, leave_out: Sequence[str] = (), na
         raise FileFormatError(f"{path}: {error}") from error
     problems.check(source)
     assert scene is not None
-    return scene
+    return scene, tuple(problems.told)
+
+
+def is_rotor(document: Any) -> bool:
+    """Whether what a file holds is a rotor saved by ROSS, by its table of parameters and its shaft elements."""
+    return isinstance(document, dict) and "parameters" in document and any(key.startswith("ShaftElement_") for key in document)
 
 
 def _document(path: Path) -> dict[str, Any]:
     document = read_document(path)
-    if not isinstance(document, dict) or "parameters" not in document or not any(key.startswith("ShaftElement_") for key in document):
+    if not is_rotor(document):
         raise FileFormatError(f"{path} is no rotor saved by ROSS: it has no table 'parameters' or no 'ShaftElement_...'.")
-    return document
+    found: dict[str, Any] = document
+    return found
