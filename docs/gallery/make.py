@@ -53,14 +53,19 @@ def ran(page: str) -> dict[str, Any]:
         return runpy.run_path("page.py")
 
 
-def saved(name: str, folder: Path) -> Path:
-    """Picture of a script as PNG of 256 colours; without a date, so that the same picture gives the same file."""
+def picture(axes: Axes) -> Image.Image:
+    """The figure of these axes in 256 colours."""
     buffer = io.BytesIO()
-    drawn(name).figure.savefig(buffer, format="png", dpi=DOTS_PER_INCH, metadata={"Software": None})
+    axes.figure.savefig(buffer, format="png", dpi=DOTS_PER_INCH, metadata={"Software": None})
+    with Image.open(buffer) as full:
+        return full.convert("RGB").quantize(256, dither=Image.Dither.NONE)
+
+
+def saved(name: str, folder: Path) -> Path:
+    """Picture of a script as PNG; without a date, so that the same picture gives the same file."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.png"
-    with Image.open(buffer) as picture:
-        picture.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
+    picture(drawn(name)).save(path, optimize=True)
     return path
 
 
