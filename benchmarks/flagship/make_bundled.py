@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,14 +22,14 @@ FOLDER = HERE.parents[1] / "hdrive_mbs" / "data" / "robot_joint_line"
 CASE, RECORD, SEED = "hysteresis", "to_and_fro", 20261122
 
 
-def main() -> int:
-    """Write record and label."""
+def made(folder: Path) -> tuple[Path, dict[str, Any]]:
+    """The record, written into a folder, and the label: what is planted in it."""
     planted = next(case for case in CASES if case.name == CASE)
     rng = np.random.default_rng(SEED)
     values = drawn(rng)
-    written = write(planted.joint(values), FOLDER, rng, records=(RECORD,))
+    (written,) = write(planted.joint(values), folder, rng, records=(RECORD,))
     verdict, effect, place = planted.right
-    label = {
+    return written, {
         "seed": SEED,
         "verdict": verdict,
         "effect": effect,
@@ -36,8 +37,13 @@ def main() -> int:
         "said": planted.said,
         "true_over_nominal": {name: round(value / DATA_SHEET[name], 6) for name, value in values.items() if value != DATA_SHEET[name]},
     }
+
+
+def main() -> int:
+    """Write record and label."""
+    written, label = made(FOLDER)
     (HERE / "bundled_label.json").write_text(json.dumps(label, indent=1) + "\n", "utf-8")
-    print(*written, sep="\n")
+    print(written)
     return 0
 
 

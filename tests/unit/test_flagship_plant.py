@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import json
 import math
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from models import robot_joint_line as joint
 
 pytest.importorskip("numba", reason='the plant is compiled by numba (extra "bench")')
 
-from benchmarks.flagship import plant, records
+from benchmarks.flagship import make_bundled, plant, records
 from benchmarks.flagship.cases import CASES
 
 FOLDER = Path(plant.__file__).parent
@@ -113,3 +114,17 @@ def test_hysteresis_loses_energy_and_friction_brakes() -> None:
     loop = np.trapezoid(torques[2000:], wind[2000:])
     lost = 4.0 * np.sum(bank.limit * (2e-3 - bank.limit / bank.stiffness))
     assert loop == pytest.approx(lost, rel=1e-3)
+
+
+def test_the_bundled_record_and_its_label_are_what_their_script_makes(tmp_path: Path) -> None:
+    made, label = make_bundled.made(tmp_path)
+    kept = make_bundled.FOLDER / made.name
+    assert label == json.loads((FOLDER / "bundled_label.json").read_text("utf-8"))
+    (head, *new), (title, *old) = (path.read_text("utf-8").splitlines() for path in (made, kept))
+    assert head == title
+    now, before = (np.array([line.split(",") for line in lines], float) for lines in (new, old))
+    names = [column.partition(" ")[0] for column in title.split(",")]
+    # another machine rounds sums otherwise, which may turn the last printed digit
+    last = np.array([10.0 ** -records.DIGITS.get(name, 4) for name in names])
+    assert now.shape == before.shape
+    assert np.all(np.abs(now - before) <= 1.001 * last)
