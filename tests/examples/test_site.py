@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.util
 import re
 import subprocess
@@ -94,6 +95,30 @@ def test_every_printed_value_is_met_or_its_row_says_why() -> None:
         *_, deviation, rounding, said = (cell.strip() for cell in row.strip("|").split("|"))
         assert said == "met" or abs(float(deviation)) < 1e-4, row
         assert (said == "met") == (abs(float(deviation)) <= float(rounding) * 1.05), row  # both are printed with two digits
+
+
+def literals(path: Path) -> set[float]:
+    """Sizes of the numbers that a source file writes out, those in texts too."""
+    written = [node.value for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.Constant)]
+    numbers = [float(value) for value in written if isinstance(value, (int, float))]
+    return {
+        abs(number) for number in (*numbers, *(float(value) for value in written if isinstance(value, str) and NUMBER.fullmatch(value)))
+    }
+
+
+def test_every_printed_value_of_the_verification_page_is_asserted_by_the_test_it_names() -> None:
+    """So that a number mended in one of them is mended in both."""
+    parts = (DOCS / "verification.md").read_text("utf-8").split("\n### ")[1:]
+    checked = 0
+    for part in parts:
+        (name,) = re.findall(r"^Test: `(tests/verification/\w+\.py)`", part, re.M)
+        known = literals(ROOT / name)
+        for row in part.splitlines():
+            if row.count("|") == 7 and re.search(r"\d", row):
+                published = row.split("|")[2].strip()
+                assert abs(float(published)) in known, f"{part.splitlines()[0]}: {published} is not in {name}"
+                checked += 1
+    assert checked > 50
 
 
 def test_what_was_found_of_the_claims_stands_in_the_committed_results() -> None:

@@ -29,6 +29,12 @@ def digits(value: float) -> float:
 # -- (7)-(10) ------------------------------------------------------------------------------------------
 
 
+def test_the_lost_motion_printed_below_17_is_that_of_1_and_9_minutes_of_arc() -> None:
+    # two digits are printed: half of the last one
+    assert hm.arcmin(1.0) == pytest.approx(2.9e-4, abs=0.05e-4)
+    assert hm.arcmin(9.0) == pytest.approx(26e-4, abs=0.5e-4)
+
+
 def test_gap_edge_is_half_the_lost_motion() -> None:
     # the text speaks of "the turning angle of the backlash of phi0 = 9 arc min"; Table 1 has half of it
     assert digits(LOST_MOTION) == 2.62e-3
