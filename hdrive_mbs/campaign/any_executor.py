@@ -20,7 +20,7 @@ def run_on_executor(executor: Any, task: bytes, jobs: Mapping[str, Point]) -> It
         for future in concurrent.futures.as_completed(keys):
             try:
                 yield keys[future], future.result()
-            except (concurrent.futures.BrokenExecutor, concurrent.futures.CancelledError) as error:
+            except Exception as error:  # cancelled, broken, ...: what the function itself raises is in its outcome
                 yield keys[future], lost(f"{type(error).__name__}: {error}", 1)
     finally:
         for future in keys:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
+import uuid
 from collections import Counter, deque
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -11,7 +13,7 @@ from hdrive_mbs.analysis.result import versions
 from hdrive_mbs.campaign.fingerprint import COUNTED
 from hdrive_mbs.campaign.outcome import Outcome, lost, run_pickled
 from hdrive_mbs.campaign.points import Point
-from hdrive_mbs.errors import DependencyError, SimulationError
+from hdrive_mbs.errors import DependencyError, ParameterError, SimulationError
 
 CONNECT = 10.0
 """Seconds to reach the scheduler."""
@@ -33,28 +35,33 @@ def packed(function: Any) -> bytes:
     return bytes(cloudpickle.dumps(function))
 
 
-def run_on_cluster(address: str, task: bytes, jobs: Mapping[str, Point], *, retries: int) -> Iterator[tuple[str, Outcome]]:
+def is_cluster(executor: Any) -> bool:
+    """Whether an executor is the address of a scheduler, or a dask client."""
+    if isinstance(executor, str):
+        return ":" in executor
+    kinds = {f"{kind.__module__}.{kind.__qualname__}" for kind in type(executor).__mro__}  # distributed itself may not be installed
+    return "distributed.client.Client" in kinds
+
+
+def run_on_cluster(cluster: Any, task: bytes, jobs: Mapping[str, Point], *, retries: int) -> Iterator[tuple[str, Outcome]]:
     """Key and outcome of each job, as they are finished; closing the iterator cancels what is still waiting.
+
+    cluster : address of a scheduler, or a dask client of the caller's, which is left open
 
     The scheduler itself gives a lost worker's jobs to others, up to its setting ``allowed-failures`` (3).  Then it gives
     up all that the worker had, also what only stood beside the job at fault.  So these are handed in again when the
     others are done, one at a time: up to ``retries`` times each, and a loss counts against the job alone.
-    Raises SimulationError when the scheduler cannot be reached or has had no worker for PATIENCE seconds.
+    Raises SimulationError when the scheduler cannot be reached or has had no worker for PATIENCE seconds, ParameterError for
+    a client that is closed or asynchronous.
     """
-    distributed = _distributed()
-    try:
-        client = distributed.Client(address, timeout=CONNECT, set_as_default=False)
-    except (OSError, TimeoutError, ValueError) as error:
-        raise SimulationError(
-            f"No dask scheduler answers at {address!r} within {CONNECT:g} s ({error}). Start one with 'dask scheduler' and give "
-            "the address it prints, like tcp://192.168.1.10:8786."
-        ) from None
-    with client:
+    campaign = uuid.uuid4().hex  # a client may run a job that failed again, which is not the same to the scheduler
+    with _client(cluster) as client:
+        address = client.scheduler.address
         attempts: Counter[str] = Counter()
 
         def submit(key: str) -> Any:
             attempts[key] += 1
-            return client.submit(run_pickled, task, dict(jobs[key]), key=f"hdrive-{key}-{client.id}-{attempts[key]}", pure=False)
+            return client.submit(run_pickled, task, dict(jobs[key]), key=f"hdrive-{key}-{campaign}-{attempts[key]}", pure=False)
 
         futures = {submit(key): key for key in jobs}
         suspects: deque[str] = deque()
@@ -84,6 +91,27 @@ def run_on_cluster(address: str, task: bytes, jobs: Mapping[str, Point], *, retr
                     yield key, outcome or lost("dask gave the job up after its workers died; see the scheduler's log", attempts[key])
         finally:
             client.cancel(list(futures), force=True)
+
+
+@contextlib.contextmanager
+def _client(cluster: Any) -> Iterator[Any]:
+    """The caller's client, left open, or one of our own for an address."""
+    distributed = _distributed()
+    if isinstance(cluster, distributed.Client):
+        if cluster.status != "running" or cluster.asynchronous:
+            state = "asynchronous" if cluster.asynchronous else cluster.status
+            raise ParameterError(f"executor = {cluster!r}: this dask client is {state}; give one that is connected and not asynchronous.")
+        yield cluster
+        return
+    try:
+        client = distributed.Client(cluster, timeout=CONNECT, set_as_default=False)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise SimulationError(
+            f"No dask scheduler answers at {cluster!r} within {CONNECT:g} s ({error}). Start one with 'dask scheduler' and give "
+            "the address it prints, like tcp://192.168.1.10:8786."
+        ) from None
+    with client:
+        yield client
 
 
 def _outcome(future: Any, attempts: int) -> Outcome | None:

@@ -12,6 +12,7 @@ import numpy as np
 
 from hdrive_mbs.campaign.any_executor import run_on_executor
 from hdrive_mbs.campaign.campaign import Campaign
+from hdrive_mbs.campaign.dask_cluster import is_cluster, packed, run_on_cluster
 from hdrive_mbs.campaign.fingerprint import fingerprint, job_key
 from hdrive_mbs.campaign.in_this_process import run_here
 from hdrive_mbs.campaign.job_files import JobFiles
@@ -41,7 +42,7 @@ def sweep(
         processes must be able to import it: a function at the top of a module, or an object such as SceneAnalysis
     points : mappings with the same names, for instance from ``grid``
     executor : "processes" of this machine, "here" (this process), the address of a dask scheduler
-        ("tcp://host:8786"), or an object with the ``submit`` of concurrent.futures
+        ("tcp://host:8786") or a dask client, or an object with the ``submit`` of concurrent.futures
     workers : number of processes; as many as the machine has cores if not given
     folder : finished jobs are kept there, and found again by the next call with the same function, point and
         package versions; None keeps them in the result alone
@@ -139,15 +140,13 @@ def _start(executor: Any, function: Any, jobs: Mapping[str, Point], *, workers: 
         from hdrive_mbs.campaign.local_processes import run_on_processes
 
         return run_on_processes(_pickled(function), jobs, workers=workers, retries=retries)
-    if isinstance(executor, str) and ":" in executor:
-        from hdrive_mbs.campaign.dask_cluster import packed, run_on_cluster
-
+    if is_cluster(executor):
         return run_on_cluster(executor, packed(function), jobs, retries=retries)
     if hasattr(executor, "submit"):
         return run_on_executor(executor, _pickled(function), jobs)
     raise ParameterError(
         f"executor = {executor!r}: must be 'processes', 'here', the address of a dask scheduler like 'tcp://host:8786', "
-        "or an object with the submit() of concurrent.futures."
+        "a dask client, or an object with the submit() of concurrent.futures."
     )
 
 

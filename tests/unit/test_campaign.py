@@ -131,6 +131,24 @@ def test_an_executor_of_the_callers_own_is_used_and_left_open() -> None:
         assert pool.submit(int, "1").result() == 1
 
 
+class LosesEverySecond(concurrent.futures.ThreadPoolExecutor):
+    """Answers every second job with an error of the executor's own."""
+
+    def submit(self, function: Any, /, *arguments: Any, **named: Any) -> Any:
+        if arguments[-1]["x"] % 2 == 0:
+            return super().submit(function, *arguments, **named)
+        future: concurrent.futures.Future[Any] = concurrent.futures.Future()
+        future.set_exception(ConnectionError("worker 7 is gone"))
+        return future
+
+
+def test_a_job_that_an_executor_of_the_callers_own_loses_is_a_failure_and_the_others_go_on() -> None:
+    with LosesEverySecond(2) as pool:
+        campaign = hm.sweep(jobs.square, points(4), executor=pool)
+    assert list(campaign.done) == [True, False, True, False]
+    assert campaign.failures[0]["error"] == "The worker was lost once (ConnectionError: worker 7 is gone); the job was given up."
+
+
 # -- jobs that fail, workers that die -------------------------------------------------------------------
 
 

@@ -19,7 +19,7 @@ import hdrive_mbs as hm
 from hdrive_mbs.campaign import dask_cluster
 from hdrive_mbs.campaign.fingerprint import fingerprint, job_key
 from hdrive_mbs.cli.main import app
-from hdrive_mbs.errors import DependencyError, SimulationError
+from hdrive_mbs.errors import DependencyError, ParameterError, SimulationError
 from tests.unit import campaign_jobs as jobs
 from tests.unit.test_campaign import log_lines, points
 
@@ -153,6 +153,28 @@ def test_a_job_that_kills_its_workers_is_given_up_and_a_failing_one_reported(clu
     failing = hm.sweep(jobs.fails_at_three, points(4), executor=cluster)
     assert [failure["parameters"] for failure in failing.failures] == [{"x": 3}]
     assert "raise ValueError" in failing.failures[0]["traceback"]
+
+
+def test_a_client_of_the_callers_own_is_used_and_left_open(cluster: str, tmp_path: Path) -> None:
+    from distributed import Client
+
+    with Client(cluster, set_as_default=False) as client:
+        campaign = hm.sweep(jobs.fails_at_three, points(5), executor=client, folder=tmp_path)
+        assert list(campaign.done) == [True, True, True, False, True]
+        assert campaign.failures[0]["error"] == "ValueError: no root at x = 3"
+        assert campaign.settings["executor"] == "Client"
+        again = hm.sweep(jobs.fails_at_three, points(5), executor=client, folder=tmp_path)
+        assert (again.reused, len(again.failures)) == (4, 1)
+        assert client.submit(int, "1").result(timeout=20) == 1
+    with pytest.raises(ParameterError, match="this dask client is closed; give one that is connected"):
+        hm.sweep(jobs.square, points(1), executor=client)
+
+
+def test_the_futures_of_a_dask_client_s_executor_are_taken_too(cluster: str) -> None:
+    from distributed import Client
+
+    with Client(cluster, set_as_default=False) as client, client.get_executor() as executor:
+        assert list(hm.sweep(jobs.square, points(3), executor=executor)["square [m^2]"]) == [0, 1, 4]
 
 
 def test_workers_with_other_versions_are_not_believed(cluster: str, monkeypatch: pytest.MonkeyPatch) -> None:
