@@ -19,22 +19,32 @@ _PART = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
 _DEEP_KEY = re.compile(rf"(?<![\w-])(?:{_PART}[ \t]*+\.[ \t]*+){{{DEEPEST}}}")
 
 
-def read_document(path: Path) -> Any:
-    """What a .json file holds, or any other as TOML.
+def document_text(path: Path, largest: int = LARGEST) -> str:
+    """The text of a file.
 
-    Raises FileFormatError for a file that cannot be read, is no UTF-8, cannot be parsed or is too large or too deep.
+    largest : bytes that it may have
+
+    Raises FileFormatError for a file that cannot be read, is no regular file, is no UTF-8 or is too large.
     """
     try:
         if path.exists() and not path.is_file() and not path.is_dir():
             raise FileFormatError(f"{path} is no regular file (a device or pipe); copy it to a file first.")
         size = path.stat().st_size
-        if size > LARGEST:
-            raise FileFormatError(f"{path} has {size / 2**20:.0f} MiB; a file of this kind has at most {LARGEST / 2**20:.0f} MiB.")
-        text = path.read_bytes().decode("utf-8-sig")
+        if size > largest:
+            raise FileFormatError(f"{path} has {size / 2**20:.0f} MiB; a file of this kind has at most {largest / 2**20:.0f} MiB.")
+        return path.read_bytes().decode("utf-8-sig")
     except OSError as error:
         raise FileFormatError(f"{path}: cannot be read ({error.strerror or error}).") from error
     except UnicodeDecodeError as error:
         raise FileFormatError(f"{path} is not a text file in UTF-8 ({error}).") from error
+
+
+def read_document(path: Path) -> Any:
+    """What a .json file holds, or any other as TOML.
+
+    Raises FileFormatError for a file that cannot be read, is no UTF-8, cannot be parsed or is too large or too deep.
+    """
+    text = document_text(path)
     is_json = path.suffix.lower() == ".json"
     if not is_json and (deep := _DEEP_KEY.search(text)):
         line = text.count("\n", 0, deep.start()) + 1

@@ -24,11 +24,12 @@ from hdrive_mbs.analysis.result import FORMAT, _checksum
 from hdrive_mbs.campaign.job_files import FinishedJob, JobFiles
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.journal import Journal
-from hdrive_mbs.diagnosis.report_json import read_report_json
+from hdrive_mbs.diagnosis.report_json import read_report_json, report_document, write_report_json
 from hdrive_mbs.errors import FileFormatError, HdriveError, UnitError
 from hdrive_mbs.records.formats import apart
 from hdrive_mbs.scene_file import scene_from_dict, scene_to_dict
 from models.harmonic_drive_train import build
+from tests.unit.diagnosis_samples import SAMPLES
 
 BUSY = 5.0
 """Seconds of processor time that no bad file may take; those here take less than 1."""
@@ -387,3 +388,84 @@ def test_a_report_that_is_none_is_refused(content: bytes, tmp_path: Path) -> Non
     path.write_bytes(content)
     with pytest.raises(FileFormatError, match=r"report\.json"):
         read_report_json(path)
+
+
+def test_a_report_of_any_size_and_a_pipe_are_refused_before_they_are_read(tmp_path: Path) -> None:
+    path = tmp_path / "large.json"
+    with path.open("wb") as file:
+        file.truncate(2**40)  # takes no room on the disk
+    with soon(), pytest.raises(FileFormatError, match=r"large\.json has 1048576 MiB; .* at most 128 MiB"):
+        read_report_json(path)
+    os.mkfifo(tmp_path / "pipe.json")
+    with pytest.raises(FileFormatError, match=r"pipe\.json is no regular file"):
+        read_report_json(tmp_path / "pipe.json")
+    with pytest.raises(FileFormatError, match="cannot be read"):
+        read_report_json(tmp_path)
+
+
+def taken(path: Path, *, verify: bool = True) -> dict[str, Any] | None:
+    """What the file of a report gives; None where it is refused by its name."""
+    try:
+        return read_report_json(path, verify=verify)
+    except HdriveError as error:
+        said = str(error)
+    assert path.name in said
+    return None
+
+
+ODD = st.sampled_from([10**400, -(10**310), True, "\ud800", "sha256", 10.0**300, json.loads("[" * 300 + "]" * 300)])
+"""What no report that was written holds, on top of what PLAIN gives."""
+
+
+@settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_whatever_stands_in_a_report_gives_its_data_or_an_error_of_ours(data: st.DataObject, tmp_path: Path) -> None:
+    written = report_document(SAMPLES["without_pictures"]())
+    changed: Any = copy.deepcopy(written)
+    spot = data.draw(st.sampled_from([path for path in spots(changed) if not path[0].endswith("_scene") or len(path) < 4]))
+    inside = changed
+    for key in spot[:-1]:
+        inside = inside[key]
+    if data.draw(st.booleans()):
+        inside[spot[-1]] = data.draw(PLAIN | ODD)
+    else:
+        del inside[spot[-1]]
+    path = tmp_path / "report.json"
+    path.write_text(json.dumps(changed))
+    found = taken(path)
+    if json.loads(path.read_text()) == written:
+        assert found == written
+    elif found is not None:  # numbers that are written in another way, or no checksum
+        assert "sha256" not in found or all(found[name] == written[name] for name in written)
+    unverified = taken(path, verify=False)
+    assert unverified is None or unverified["schema"] == written["schema"]
+
+
+@settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    content=st.binary(max_size=200) | st.text(alphabet='{}[]",:0123456789eE+-.truefalsn \\ud8', max_size=200).map(str.encode),
+    within=st.booleans(),
+)
+def test_any_text_in_a_report_gives_its_data_or_an_error_of_ours(content: bytes, within: bool, tmp_path: Path) -> None:
+    path = tmp_path / "report.json"
+    head = b'{"schema": "hdrive-mbs diagnosis", "schema_version": 1, "sha256": "x", "causes": '
+    path.write_bytes(head + content + b"}" if within else content)
+    assert taken(path) is None
+    assert within or taken(path, verify=False) is None
+
+
+def test_a_report_with_flipped_or_missing_bytes_is_refused_or_reads_the_same(tmp_path: Path) -> None:
+    answer = SAMPLES["without_pictures"]()
+    path = write_report_json(answer, tmp_path / "report.json")
+    whole, written = path.read_bytes(), report_document(answer)
+    rng = np.random.default_rng(6)
+    refused = 0
+    for number in range(200):
+        damaged = bytearray(whole[: int(rng.integers(len(whole)))] if number % 4 == 0 else whole)
+        for place in rng.integers(0, len(damaged), 1 + number % 3) if damaged else ():
+            damaged[place] = int(rng.integers(256))
+        path.write_bytes(bytes(damaged))
+        found = taken(path)
+        assert found is None or found == written  # spaces between the values may be others
+        refused += found is None
+    assert refused > 100
