@@ -115,7 +115,8 @@ class Record:
     @cached_property
     def step(self) -> float:
         """Usual distance of two samples: the median of the positive ones [s]; NaN for fewer than two samples."""
-        steps = np.diff(self.times)
+        with np.errstate(over="ignore", invalid="ignore"):  # times of a damaged file may be of any size
+            steps = np.diff(self.times)
         rising = steps[steps > 0.0]
         return float(np.median(rising)) if len(rising) else float("nan")
 

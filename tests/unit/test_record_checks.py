@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -50,6 +51,15 @@ def test_every_kind_that_can_be_repaired_is_a_kind_of_finding() -> None:
 
 
 # ---- time
+
+
+@pytest.mark.parametrize(("late", "missing"), [(1e306, "inf"), (1e250, r"1e\+253"), (float(TIMES[-1]) + 1.0, "1000")])
+def test_a_damaged_time_of_any_size_is_a_gap(late: float, missing: str) -> None:
+    times = TIMES.copy()
+    times[-1] = late
+    finding = only(record(times, x=("m", np.sin(TIMES))).findings, "gaps")
+    # 1 s late at a step of 1 ms; 1e250 s / 1 ms; 1e306 s / 1 ms is more than the largest number
+    assert re.search(rf"1 gaps, {missing} samples missing", finding.text)
 
 
 def test_missing_samples_are_counted_and_filled_only_when_asked() -> None:

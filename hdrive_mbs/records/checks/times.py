@@ -21,6 +21,9 @@ SCATTERED = 0.2
 JITTER = 0.02
 """Rms deviation of the steps, in usual steps, from which it is reported."""
 
+READABLE = 1e9
+"""Number of missing samples up to which all digits are told; a damaged time can be any number, up to infinitely many steps away."""
+
 SHORTEST = 16
 """Samples below which no check or fit says anything."""
 
@@ -91,7 +94,8 @@ def _duplicates(times: np.ndarray, same: np.ndarray) -> Finding:
 def _steps(times: np.ndarray, steps: np.ndarray, step: float) -> Iterator[Finding]:
     long = steps > MISSING * step
     if long.any() and long.mean() <= SCATTERED:
-        missing = int(np.sum(np.round(steps[long] / step) - 1.0))
+        missing = float(np.sum(np.round(steps[long] / step) - 1.0))
+        told = f"{missing:.0f}" if missing < READABLE else f"{missing:.3g}"
         worst = int(np.argmax(steps))
         start = float(times[worst])
         yield Finding(
@@ -100,7 +104,7 @@ def _steps(times: np.ndarray, steps: np.ndarray, step: float) -> Iterator[Findin
             where=f"t = {start:.6g} s to {start + steps[worst]:.6g} s",
             blocks=True,
             text=(
-                f"{int(long.sum())} gaps, {missing} samples missing, the longest {steps[worst]:.6g} s from t = {start:.6g} s "
+                f"{int(long.sum())} gaps, {told} samples missing, the longest {steps[worst]:.6g} s from t = {start:.6g} s "
                 f"(usual step {step:.6g} s); gaps='interpolate' fills short ones with straight lines, gaps='keep' leaves the samples "
                 "as they are, record.between(start, end) takes a part without"
             ),

@@ -98,8 +98,13 @@ def claim(data: Any) -> int:
 
 
 def attribute_text(item: Any, name: str) -> str | None:
-    """A text attribute; None where it is missing or no text."""
-    if name not in item.attrs:
+    """A text attribute; None where it is missing or no text.
+
+    Nothing else is read: an opaque type whose tag says "NUMPY:|O" makes h5py take bytes of the file for addresses of Python objects.
+    """
+    import h5py
+
+    if name not in item.attrs or h5py.check_string_dtype(item.attrs.get_id(name).dtype) is None:
         return None
     value = item.attrs[name]
     value = value.item() if isinstance(value, np.ndarray) and value.size == 1 else value

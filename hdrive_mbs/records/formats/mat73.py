@@ -7,6 +7,7 @@ a matrix first, so a matrix is turned.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +31,7 @@ def read(path: Path, wanted: Wanted) -> Contents:
             found = list(datasets(file, skipped))
             check_claim(path, sum(claim(data) for parts, data in found if wanted(".".join(parts)) or wanted(".".join(parts[:-1]))), FEWER)
             for parts, data in found:
-                if attribute_text(data, "MATLAB_class") == "char" and parts[-1] in UNITS and data.size < 200:
+                if attribute_text(data, "MATLAB_class") == "char" and parts[-1] in UNITS and data.dtype.kind in "iu" and data.size < 200:
                     texts[parts[:-1]] = "".join(chr(code) for code in np.asarray(data).ravel())
             for parts, data in found:
                 if parts[0].startswith("#"):
@@ -40,8 +41,12 @@ def read(path: Path, wanted: Wanted) -> Contents:
                 name = ".".join(parts[:-1] if whole else parts)
                 if parts[:-1] in texts and parts[-1] in UNITS:
                     continue
-                if kind not in numeric or data.attrs.get("MATLAB_empty", 0):
-                    skipped[name] = "an empty array" if kind in numeric else f"a MATLAB {kind}, which is not opened"
+                if kind not in numeric or data.dtype.kind not in "biuf" or _is_empty(data):
+                    skipped[name] = (
+                        f"a MATLAB {kind}, which is not opened"
+                        if kind not in numeric
+                        else real_numbers(np.empty(1, data.dtype)) or "an empty array"
+                    )
                 elif wanted(name):
                     values = np.squeeze(np.asarray(data)).T
                     problem = real_numbers(values) if values.ndim else "a single number"
@@ -56,6 +61,12 @@ def read(path: Path, wanted: Wanted) -> Contents:
         raise broken(path, "MATLAB 7.3", error) from error
     check_width(path, columns)
     return Contents(columns=tuple(columns), skipped=skipped)
+
+
+def _is_empty(data: Any) -> bool:
+    """Whether MATLAB wrote the size of an empty array in place of its values."""
+    name = "MATLAB_empty"
+    return name in data.attrs and data.attrs.get_id(name).dtype.kind in "iu" and bool(np.any(data.attrs[name]))
 
 
 FORMAT = Format(

@@ -33,7 +33,7 @@ def read(path: Path, wanted: Wanted) -> Contents:
                 heading, unit = named_unit(field.name, is_unit)
                 if field.name in repeated or not wanted(heading):
                     continue
-                metadata = {key.decode().lower(): value.decode() for key, value in (field.metadata or {}).items()}
+                metadata = {_text(key).lower(): _text(value) for key, value in (field.metadata or {}).items()}
                 unit = metadata.get("unit", metadata.get("units", unit))
                 if types.is_timestamp(field.type) or types.is_duration(field.type):
                     unit = _STEPS[field.type.unit]
@@ -55,6 +55,11 @@ def read(path: Path, wanted: Wanted) -> Contents:
             raise
         raise broken(path, "Parquet", error) from error
     return Contents(columns=tuple(columns), skipped=skipped)
+
+
+def _text(data: bytes) -> str:
+    """Metadata as text: of a type of its author's own they may be bytes of any kind."""
+    return data.decode("utf-8", "replace")
 
 
 def _numbers(table: Any, types: Any) -> np.ndarray:
