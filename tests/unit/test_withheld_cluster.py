@@ -2,37 +2,21 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import threading
-import time
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from benchmarks.withheld import run
 from hdrive_mbs.campaign import dask_cluster
 from tests.unit.test_campaign_cluster import scheduler, start
+from tests.unit.withheld_job import SlowJob, written_cases
 
 pytest.importorskip("distributed", reason="dask.distributed comes with the cluster extra")
 NAMES = ("drive-c1", "drive-c2", "drive-c3", "drive-c4")
-
-
-@dataclass(frozen=True)
-class SlowJob(run.Job):
-    """Says where it works and takes its time."""
-
-    def __call__(self, point: Mapping[str, Any]) -> dict[str, str]:
-        folder = Path(point["folder"])
-        with (folder.parent / "log").open("a") as log:
-            log.write(f"{folder.name} {os.getpid()}\n")
-        time.sleep(0.3)
-        json.loads((folder / "record.parquet").read_text())
-        return super().__call__(point)
 
 
 @pytest.fixture(scope="module")
@@ -49,10 +33,7 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 @pytest.fixture
 def cases(tmp_path: Path) -> Path:
-    for name in NAMES:
-        (tmp_path / "set" / name).mkdir(parents=True)
-        (tmp_path / "set" / name / "record.parquet").write_text("1.5")
-    return tmp_path / "set"
+    return written_cases(tmp_path / "set", *NAMES)
 
 
 def test_the_cluster_gives_the_answers_of_this_process(cluster: str, cases: Path, monkeypatch: pytest.MonkeyPatch) -> None:
