@@ -7,8 +7,10 @@ import json
 import os
 import pickle
 import signal
+import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -26,10 +28,13 @@ from hdrive_mbs.diagnosis.report_json import read_report_json
 from hdrive_mbs.errors import FileFormatError
 from hdrive_mbs.scene_file import load_scene, save_scene, scene_from_dict
 from models import drive_bench
+from tests.patience import PATIENCE
 from tests.unit.diagnosis_samples import SAMPLES
+from tests.unit.test_campaign import gone
 from tests.unit.test_campaign_cluster import scheduler, start
 from tests.unit.test_diagnose_cli import record
 
+ROOT = Path(__file__).parents[2]
 BENCH = '''
 import os
 import time
@@ -160,6 +165,84 @@ def test_cases_are_folders_files_and_folders_of_folders_with_short_names(tmp_pat
         cases_in([tmp_path / "empty"])
     with pytest.raises(FileFormatError, match="no such file or folder"):
         cases_in([tmp_path / "nowhere"])
+
+
+def test_a_killed_process_of_this_machine_loses_no_case_and_no_fit(bench: Path, tmp_path: Path) -> None:
+    written(tmp_path, "quick_bench", 0.5)
+    killed: list[str] = []
+    over = threading.Event()
+
+    def kill() -> None:
+        while not killed and not over.wait(0.005):
+            if lines := log_lines(bench):
+                killed.append(lines[0][0])
+                os.kill(int(lines[0][1]), signal.SIGKILL)
+
+    thread = threading.Thread(target=kill)
+    thread.start()
+    folder, out = cases(tmp_path / "set", "a", "b"), tmp_path / "out"
+    done = invoke(str(bench), "--records", str(folder), "--out", str(out), "--workers", "2")
+    over.set()
+    thread.join()
+    assert done.exit_code == 0, done.output
+    assert sorted(line[0] for line in log_lines(bench)) == sorted(["run_a", "run_b", killed[0]])
+    assert [killed[0], "goes_on"] in [[line[0], line[2]] for line in log_lines(bench)], "its fits were found again"
+    for name in ("a", "b"):
+        assert read_report_json(out / name / "diagnosis.json")["verdict"] == "effect"
+
+
+COMMAND = """
+import signal
+from hdrive_mbs.cli.main import main
+if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's job in the background ignores it, and so do its children
+    main()
+"""
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL])
+def test_an_interrupted_command_keeps_finished_cases_and_the_same_one_goes_on(bench: Path, tmp_path: Path, how: signal.Signals) -> None:
+    written(tmp_path, "quick_bench", 0.5)
+    names = ("a", "b", "c", "d", "e")
+    out, script = tmp_path / "out", tmp_path / "command.py"
+    script.write_text(COMMAND)
+    words = (str(bench), "--records", str(cases(tmp_path / "set", *names)), "--out", str(out), "--workers", "2")
+    process = subprocess.Popen(
+        [sys.executable, script, "diagnose-all", *words],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    end = time.monotonic() + PATIENCE
+    while not list(out.glob("*/diagnosis.html")) and process.poll() is None and time.monotonic() < end:
+        time.sleep(0.01)
+    if how == signal.SIGINT:
+        os.killpg(process.pid, how)  # as a terminal does
+    else:
+        process.send_signal(how)
+    said, errors = process.communicate(timeout=PATIENCE)
+    assert gone({int(line[1]) for line in log_lines(bench)}, PATIENCE), "a worker outlived the command"
+    finished = len(list(out.glob("jobs/*.npz")))
+    assert 1 <= finished < len(names), errors
+    if how == signal.SIGINT:
+        assert process.returncode == 130, errors
+        assert f"stopped with {finished} of 5 jobs done" in " ".join(said.split())
+        assert f"{finished} of 5 cases done" in said
+    else:
+        assert process.returncode == -signal.SIGKILL
+
+    before = log_lines(bench)
+    begun = {line[0] for line in before}
+    again = invoke(*words)
+    assert again.exit_code == 0, again.output
+    assert f"5 of 5 cases done, {finished} of them found finished" in again.stdout
+    ran = {line[0]: line[2] for line in log_lines(bench)[len(before) :]}
+    assert len(ran) == len(log_lines(bench)) - len(before) == len(names) - finished
+    assert {name for name, how_it_began in ran.items() if how_it_began == "goes_on"} >= begun & set(ran), "fits were found again"
+    for name in names:
+        assert read_report_json(out / name / "diagnosis.json")["verdict"] == "effect"
 
 
 # on a cluster
