@@ -200,7 +200,7 @@ if __name__ == "__main__":
 """
 
 
-@pytest.mark.parametrize("how", [signal.SIGKILL])
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
 def test_an_interrupted_command_keeps_finished_cases_and_the_same_one_goes_on(bench: Path, tmp_path: Path, how: signal.Signals) -> None:
     written(tmp_path, "quick_bench", 0.5)
     names = ("a", "b", "c", "d", "e")
