@@ -143,5 +143,6 @@ def test_quick_library_has_one_law_of_each_family() -> None:
     from hdrive_mbs.diagnosis.candidates import known_effects
 
     chosen = command.one_law_each()
-    assert sorted(kind.family for kind in chosen) == sorted({kind.family for kind in known_effects()})
+    library = [kind for kind in known_effects() if kind.__module__.startswith("hdrive_mbs.")]  # other tests define laws of their own
+    assert sorted(kind.family for kind in chosen) == sorted({kind.family for kind in library})
     assert "CoulombStribeckFriction" in {kind.__name__ for kind in chosen}  # no states, as Dahl and LuGre have
