@@ -38,6 +38,12 @@ def error() -> Diagnosis:
     return diagnose(bench(), records((KinematicError(amplitude=1e-4, order=ORDER, phase=0.8), "gear")), candidates=KinematicError)
 
 
+@cache
+def pages() -> tuple[str, str]:
+    """Of a loop where a connection is to blame, of orders where the shaft runs through speeds."""
+    return report_html(hysteresis()), report_html(error())
+
+
 def test_the_loop_of_the_gear_is_shown_for_every_record() -> None:
     found = hysteresis()
     assert {loop.record for loop in found.loops} == set(INPUTS)
@@ -60,8 +66,7 @@ def test_an_order_stands_in_the_map_before_and_not_after() -> None:
 
 
 def test_the_page_holds_these_pictures_with_words_for_those_who_do_not_see_them() -> None:
-    """Of a loop where a connection is to blame, of orders where the shaft runs through speeds."""
-    alts = [re.findall(r'<img[^>]* alt="([^"]*)"', report_html(found)) for found in (hysteresis(), error())]
+    alts = [re.findall(r'<img[^>]* alt="([^"]*)"', page) for page in pages()]
     assert sum(text.startswith("Loop of torque against twist of gear during record") for text in alts[0]) == len(INPUTS)
     maps = [text for text in alts[1] if text.startswith("Map of amplitudes of the residual")]
     assert len(maps) == len(error().order_maps) > 0
@@ -72,9 +77,9 @@ def test_the_page_holds_these_pictures_with_words_for_those_who_do_not_see_them(
 @needs_browser
 @pytest.mark.parametrize("width", [PHONE, DESKTOP])
 def test_the_page_fits_a_phone_and_a_desktop(width: int, tmp_path: Path) -> None:
-    for name, found in (("loop", hysteresis()), ("map", error())):
+    for name, page in zip(("loop", "map"), pages(), strict=True):
         (tmp_path / name).mkdir()
-        layout(report_html(found), width, tmp_path / name).check()
+        layout(page, width, tmp_path / name).check()
 
 
 def test_without_a_claim_there_is_no_loop_after() -> None:
