@@ -6,7 +6,7 @@ import hashlib
 from collections import OrderedDict
 from collections.abc import Hashable
 from dataclasses import dataclass, field
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, WeakValueDictionary
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,7 @@ KEPT_BYTES = 96_000_000
 
 _kept: OrderedDict[Hashable, FloatArray] = OrderedDict()
 _digests: WeakKeyDictionary[Pieces, bytes] = WeakKeyDictionary()
+_alive: WeakValueDictionary[Hashable, TimeInput] = WeakValueDictionary()
 
 
 @dataclass(frozen=True)
@@ -55,14 +56,18 @@ class TimeInput:
 
 
 def time_input(expression: Expression) -> TimeInput:
-    """An expression of time (or the time itself) with its content: operations, numbers and tables."""
+    """An expression of time (or the time itself) with its content: operations, numbers and tables.
+
+    While one of the same content is in use it is that one, so that many lines of one record hold its tables once.
+    """
     number: dict[int, int] = {}
     content = []
     for node in in_order(expression):
         data = digest(node.data) if node.operation == "pieces" else node.data
         content.append((node.operation, data, *(number[id(item)] for item in node.arguments)))
         number[id(node)] = len(number)
-    return TimeInput(tuple(content), expression)
+    found = TimeInput(tuple(content), expression)
+    return _alive.setdefault(found.content, found)
 
 
 def _column(key: Hashable, expression: Expression, grid: Grid) -> FloatArray:

@@ -17,7 +17,8 @@ import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.bounded import bounded_step
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
-from hdrive_mbs.diagnosis.simulator import Simulator, chi_square
+from hdrive_mbs.diagnosis.normal_equations import STRETCH, normal_equations
+from hdrive_mbs.diagnosis.simulator import AT_ONCE, Simulator, chi_square
 from hdrive_mbs.errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
@@ -83,14 +84,19 @@ def jacobian(
     if metric is not None and not all(np.allclose(hypothesis.clipped(point), point, rtol=0.0, atol=1e-14) for point in points):
         return jacobian(simulator, hypothesis, z, residuals)
     changes = np.zeros((len(z), len(base)))
-    for k, item in enumerate(simulator.residuals(hypothesis, points)):
-        if item is not None:
-            changes[k] = item[mask] - base
-        elif metric is not None:
-            return jacobian(simulator, hypothesis, z, residuals)
+    for first in range(0, len(points), AT_ONCE):
+        for k, item in enumerate(simulator.residuals(hypothesis, points[first : first + AT_ONCE]), first):
+            if item is not None:
+                np.subtract(item[mask], base, out=changes[k])
+            elif metric is not None:
+                return jacobian(simulator, hypothesis, z, residuals)
     if metric is None:
-        return np.asarray((changes / np.diag(directions)[:, None]).T)
-    return np.asarray(np.linalg.solve(directions.T, changes).T)
+        changes /= np.diag(directions)[:, None]
+    else:
+        for first in range(0, len(base), STRETCH):
+            some = changes[:, first : first + STRETCH]
+            some[:] = np.linalg.solve(directions.T, some)
+    return changes.T
 
 
 def _axes(hypothesis: Hypothesis, z: FloatArray, metric: FloatArray) -> FloatArray:
@@ -140,8 +146,8 @@ def fit(
         weights = simulator.blocks.weights(residuals[mask])
         systems = {}
         for power, _ in SHORTER:
-            weighted = columns * (weights**power)[:, None]
-            systems[power] = weighted.T @ columns, weighted.T @ residuals[mask] + precisions * z
+            squares, slope = normal_equations(columns, weights**power, residuals[mask])
+            systems[power] = squares, slope + precisions * z
         curvature = systems[1.0][0] if fresh else curvature
         points = _proposals(hypothesis, z, precisions, systems, damping)
         found, costs, kept_promise = _tried(simulator, hypothesis, points, cost, _promised(points[0][0] - z, *systems[1.0], precisions))
@@ -195,7 +201,11 @@ def secant(columns: FloatArray, change: FloatArray, move: FloatArray, scale: Flo
     Source: Dennis, Schnabel, Numerical Methods for Unconstrained Optimization, 8.1, with weighted coordinates.
     """
     weighted = scale * move
-    return np.asarray(columns + np.outer(change - columns @ move, weighted / max(float(move @ weighted), TINY)))
+    missed, along = change - columns @ move, weighted / max(float(move @ weighted), TINY)
+    mended = np.empty_like(columns)
+    for k, part in enumerate(along):
+        np.add(columns[:, k], part * missed, out=mended[:, k])
+    return mended
 
 
 def _cost(simulator: Simulator, hypothesis: Hypothesis, residuals: FloatArray | None, z: FloatArray) -> float:

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.bounded import bounded_step
 from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian
+from hdrive_mbs.diagnosis.normal_equations import normal_equations
 from hdrive_mbs.diagnosis.simulator import Simulator
 
 FloatArray = npt.NDArray[np.float64]
@@ -62,11 +63,10 @@ def _bowl(simulator: Simulator, fitted: Fitted) -> tuple[FloatArray, float]:
     move, promised = np.zeros_like(z), 0.0
     for _ in range(2):  # the metric of the first differences is that of the wave
         columns = jacobian(simulator, hypothesis, z, fitted.residuals, metric)
-        weighted = columns * weights[:, None]
-        curvature = weighted.T @ columns
+        curvature, pull = normal_equations(columns, weights, part)
         metric = curvature + np.diag(hypothesis.curvatures(z))
         normal = curvature + np.diag(hypothesis.precisions)
-        slope = weighted.T @ part + hypothesis.precisions * z
+        slope = pull + hypothesis.precisions * z
         reaches = hypothesis.reaches(z)
         move = np.clip(bounded_step(hypothesis, z, normal, slope), -reaches, reaches)
         promised = -float(slope @ move) - 0.5 * float(move @ normal @ move)

@@ -11,6 +11,7 @@ from typing import Any
 
 from hdrive_mbs.diagnosis.packing import packed, unpacked
 from hdrive_mbs.errors import AnalysisError
+from hdrive_mbs.freed_memory import give_back
 from hdrive_mbs.worker_process import READY, WorkerProcess, work_for_parent
 
 
@@ -44,6 +45,7 @@ def _work(pipe: connection.Connection) -> None:
             try:
                 if path not in known:
                     known.clear()
+                    give_back()
                     known[path] = unpacked(Path(path).read_bytes())
                 function, item = unpacked(data)
                 pipe.send((True, function(known[path], item)))

@@ -315,8 +315,13 @@ def test_a_first_look_finds_a_hidden_mode_whose_frequency_no_start_has() -> None
     look = screen_from(missing, base).look(suspect.first)
     assert look is not None
     best = fit(missing, look.hypothesis, look.z, steps=25)
-    assert look.cost < base.cost - 0.5 * (base.cost - best.cost)
-    assert best.hypothesis.values(best.z)["hidden_mode.natural_frequency"] == pytest.approx(310.0, rel=0.1)
+    planted = Hypothesis(
+        factors_of(BENCH), (Added(hm.HiddenMode(inertia=0.02, natural_frequency=310.0, damping_ratio=0.05), "load", "mode"),)
+    )
+    truth = fit(missing, planted, planted.start(), steps=25)
+    assert look.cost < base.cost - 0.5 * (base.cost - truth.cost)
+    # three standard deviations of one coordinate: this record leaves the frequency itself open by a fifth
+    assert best.cost < truth.cost + 0.5 * 3.0**2 < base.cost
 
 
 def test_a_first_look_finds_a_hidden_mode_from_a_start_that_is_a_third_off() -> None:
