@@ -194,6 +194,21 @@ def test_at_a_kink_the_derivative_is_that_of_one_side() -> None:
     assert evaluate(derivative(record(abs(x)), "x"), {"x": 0.0}) == 0.0
 
 
+@pytest.mark.parametrize("radius", [lambda a, b: np.sqrt(a * a + b * b), np.hypot, lambda a, b: (a * a + b * b) ** 0.5])
+def test_a_radius_is_level_at_the_centre_and_has_its_slope_elsewhere(radius: Callable[[Any, Any], Any]) -> None:
+    """So that a stop beyond a radial gap can be linearised about the centre."""
+    slope = scalar_function([derivative(record(radius(x, y)), "x")], ("x", "y"))
+    assert slope(0.0, 0.0) == (0.0,)
+    assert slope(3.0, 4.0) == (pytest.approx(0.6, rel=1e-15),)
+    stop = derivative(record(x * np.maximum(0.0, radius(x, y) - 1.0) / (radius(x, y) + 1e-9)), "x")
+    assert scalar_function([stop], ("x", "y"))(0.0, 0.0) == (0.0,)
+
+
+def test_a_root_that_begins_steeply_has_no_finite_slope_there() -> None:
+    with np.errstate(divide="ignore"):
+        assert math.isinf(evaluate(derivative(record(np.sqrt(x)), "x"), {"x": np.float64(0.0)}))
+
+
 # -- numpy functions ------------------------------------------------------------------------------
 
 MIXED = np.array([-3.7, -1.0, -0.3, 0.0, 0.2, 0.5, 1.0, 2.5])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from hdrive_mbs.analysis.whirl.mode_tracking import ModeTracker, follow
 from hdrive_mbs.analysis.whirl.reduced_basis import reduced_model
 from hdrive_mbs.analysis.whirl.spinning_line import SpinningLine
 from hdrive_mbs.analysis.whirl.whirl_kind import WhirlKinds
-from hdrive_mbs.errors import AnalysisError, HdriveError, ParameterError, PlaceError
+from hdrive_mbs.errors import AnalysisError, HdriveError, LawError, ParameterError, PlaceError
 from models.two_rotor_line import build
 from tests.verification.scenes import chain
 from tests.verification.whirl_scenes import FULL_SPEED, OVERHUNG, C, K, jeffcott, overhung_closed_form, overhung_disc, two_discs
@@ -277,6 +278,42 @@ def internally_damped() -> hm.Scene:
         "right": half,
     }
     return hm.Scene(name="internal damping", parts=parts, connections=[("ground", "left", "disc", "right", "ground"), ("disc", "damper")])
+
+
+@dataclass(frozen=True, kw_only=True)
+class RadialStop(hm.BearingLaw):
+    """A soft ring that meets a stop after a gap all around."""
+
+    soft: float = hm.parameter("N/m", "stiffness inside the gap", above=0.0)
+    gap: float = hm.parameter("m", "radial gap", above=0.0)
+
+    def forces(self, motion: hm.RelativeMotion) -> dict[str, Any]:
+        radius = np.hypot(motion.x, motion.y)
+        stiffness = self.soft + 1e9 * np.maximum(0.0, radius - self.gap) / (radius + 1e-12)
+        return {"x": stiffness * motion.x, "y": stiffness * motion.y}
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurnedSpring(RadialStop):
+    """One that depends on the direction of the displacement, which there is none of at the centre."""
+
+    def forces(self, motion: hm.RelativeMotion) -> dict[str, Any]:
+        return {"x": self.soft * motion.x * (1.0 + 0.1 * np.arctan2(motion.y, motion.x)), "y": self.soft * motion.y}
+
+
+def test_a_stop_around_a_soft_ring_leaves_the_frequencies_of_the_ring() -> None:
+    def frequencies(law: hm.BearingLaw) -> Any:
+        bearing = hm.Bearing(law=law)
+        return hm.campbell(two_discs(kx=1e6).replacing({"station_3": bearing}), [0.0, 100.0]).frequencies
+
+    ring = hm.LinearBearing(stiffness_xx=4e6, stiffness_yy=4e6)
+    np.testing.assert_allclose(frequencies(RadialStop(soft=4e6, gap=5e-5)), frequencies(ring), rtol=1e-12)
+
+
+def test_a_law_without_a_derivative_is_named_with_its_place() -> None:
+    line = two_discs(kx=1e6).replacing({"station_3": hm.Bearing(law=TurnedSpring(soft=4e6, gap=5e-5))})
+    with pytest.raises(LawError, match=r"station_3.*no finite derivative with respect to station_3.*y where that is 0, .*np\.where"):
+        hm.campbell(line, [0.0, 100.0])
 
 
 def test_internal_damping_makes_forward_whirl_grow_above_the_speed_of_the_closed_form() -> None:

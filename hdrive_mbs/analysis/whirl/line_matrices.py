@@ -19,6 +19,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.errors import LawError
 from hdrive_mbs.expression import Expression, TraceError, Value, derivative, evaluate, record, scalar_function, trace, variables
 from hdrive_mbs.network.circulation import Circulation
 from hdrive_mbs.network.coupling import Coupling, Gyroscope
@@ -46,8 +47,9 @@ class LineSystem:
 
 @dataclass(frozen=True)
 class _Slope:
-    """d(force on row)/d(coordinate of column): an expression of the state."""
+    """d(force on row)/d(coordinate of column) of an element: an expression of the state."""
 
+    element: str
     row: int
     column: int
     kind: str
@@ -132,7 +134,7 @@ class LineMatrices:
             for name in variables(recorded):
                 kind, _, owner = name.partition(":")
                 if kind in _KINDS and owner in self._index and not (kind == "angle" and self._is_periodic(element, target, owner)):
-                    self._add_slope(_Slope(self._index[target], self._index[owner], kind, derivative(recorded, name)))
+                    self._add_slope(_Slope(element.name, self._index[target], self._index[owner], kind, derivative(recorded, name)))
 
     def _is_periodic(self, element: Element, target: str, coordinate: str) -> bool:
         """Whether the force on a target depends on the angle of a spin and not on a twist between two: see above."""
@@ -158,7 +160,10 @@ class LineMatrices:
         return arguments, scalar_function(values, arguments)
 
     def at(self, angles: Mapping[str, float], speeds: Mapping[str, float], states: Mapping[str, float] | None = None) -> LineSystem:
-        """The matrices at forward angles, speeds and states of the coordinates (time 0)."""
+        """The matrices at forward angles, speeds and states of the coordinates (time 0).
+
+        Raises LawError where a law has no finite derivative.
+        """
         damping, stiffness = self._damping.copy(), self._stiffness.copy()
         moment = self.network.moment(np.float64(0.0), angles, speeds, states or {})
         for part in self._spinning:
@@ -171,10 +176,21 @@ class LineMatrices:
             arguments, function = self._compiled_slopes
             for slope, value in zip(self._slopes, function(*(known[name] for name in arguments)), strict=True):
                 matrix = stiffness if slope.kind == "angle" else damping
+                if not np.isfinite(value):
+                    raise LawError(self._endless(slope, moment))
                 matrix[slope.row, slope.column] -= value
         for element in self._plain:
             self._difference(element, moment, damping, stiffness)
         return LineSystem(self.names, self.mass, damping, stiffness)
+
+    def _endless(self, slope: _Slope, moment: Moment) -> str:
+        owner = self.names[slope.column]
+        values, what = (moment.angles, "") if slope.kind == "angle" else (moment.speeds, "the speed of ")
+        return (
+            f"{slope.element}: its force on {self.names[slope.row]} has no finite derivative with respect to {what}{owner} where that"
+            f" is {float(values[owner]):.6g}, so the line cannot be linearised there. Make its law smooth at that point, like"
+            " np.sqrt(x**2 + small**2) in place of np.sqrt(x**2), or give it a value of its own there with np.where."
+        )
 
     def _difference(self, element: Element, moment: Moment, damping: FloatArray, stiffness: FloatArray) -> None:
         """Central differences for a law that cannot be recorded."""
