@@ -72,6 +72,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "components.sensor": ("Sensor",),
     "flexsplines.law": ("StiffnessLaw",),
     "flexsplines.piecewise_linear": ("PiecewiseLinearStiffness",),
+    "flexsplines.linear": ("LinearStiffness",),
     "flexsplines.cubic": ("CubicStiffness",),
     "flexsplines.jump_torque": ("JumpTorqueStiffness",),
     "flexsplines.jump_secant": ("JumpSecantStiffness",),

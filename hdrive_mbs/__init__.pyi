@@ -214,6 +214,7 @@ from hdrive_mbs.flexsplines.cubic import CubicStiffness as CubicStiffness
 from hdrive_mbs.flexsplines.jump_secant import JumpSecantStiffness as JumpSecantStiffness
 from hdrive_mbs.flexsplines.jump_torque import JumpTorqueStiffness as JumpTorqueStiffness
 from hdrive_mbs.flexsplines.law import StiffnessLaw as StiffnessLaw
+from hdrive_mbs.flexsplines.linear import LinearStiffness as LinearStiffness
 from hdrive_mbs.flexsplines.piecewise_linear import PiecewiseLinearStiffness as PiecewiseLinearStiffness
 from hdrive_mbs.flexsplines.table import TableStiffness as TableStiffness
 from hdrive_mbs.loads.constant import ConstantTorque as ConstantTorque

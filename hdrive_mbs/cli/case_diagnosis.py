@@ -82,7 +82,7 @@ class CaseDiagnosis:
         own = [item.opened() for item in self.effects]
         kinds = tried(own, self.only)
         bench = open_bench(self.bench.opened(), own) if isinstance(self.bench, GivenFile) else self.bench
-        measured = measured_in(files, self.reading)
+        measured = measured_in(files, self.reading, bench)
         from hdrive_mbs.diagnosis.diagnose import diagnose as run
 
         kept = Path(self.work) / str(point["case"]) if Path(self.work).is_dir() else None
@@ -126,7 +126,7 @@ def report_files(result: Diagnosis) -> dict[str, Any]:
     """Every file that ``hdrive-mbs diagnose`` writes, by name, as bytes."""
     with tempfile.TemporaryDirectory(prefix="hdrive_mbs_") as folder:
         with contextlib.redirect_stderr(sys.stdout):
-            write_answer(result, Path(folder))
+            write_answer(result, Path(folder), stays=False)
         written = (path for path in sorted(Path(folder).rglob("*")) if path.is_file())
         return {path.relative_to(folder).as_posix(): np.frombuffer(path.read_bytes(), dtype=np.uint8) for path in written}
 

@@ -58,7 +58,7 @@ def diagnose(
     chosen = open_bench(scene, effects or ())
     reading = reading_of(channel, unit, time, repair)
     paths = [*records, *(more or ())]
-    measured = measured_in(paths, reading)
+    measured = measured_in(paths, reading, chosen)
     name = chosen.name if isinstance(chosen, Scene) else chosen.scene.name
     folder = out or Path("results") / re.sub(r"\W+", "_", f"diagnosis {name}")
     work = _begin(folder / WORK, _job(scene, measured, effects or (), only or (), reading, held_out or ()), resume)
@@ -128,14 +128,17 @@ def tried(files: Sequence[Path], only: Sequence[str] = ()) -> list[type[Effect]]
     return [kind for kind in known if not only or kind.__name__ in only or kind.family in only]
 
 
-def write_answer(result: Diagnosis, folder: Path) -> None:
-    """Text, JSON, improved scene, summary picture and page into a folder; the answer itself first."""
+def write_answer(result: Diagnosis, folder: Path, *, stays: bool = True) -> None:
+    """Text, JSON, improved scene, summary picture and page into a folder; the answer itself first.
+
+    stays : whether they stay there, so that files of one's own can be named from there
+    """
     from hdrive_mbs.diagnosis.report_json import write_report_json
     from hdrive_mbs.diagnosis.report_text import write_report
 
     write_report_json(result, folder / "diagnosis.json")
     write_report(result, folder / "diagnosis.txt")
-    write_improved(result, folder)
+    write_improved(result, folder, stays=stays)
     from hdrive_mbs.plots import plot, save_figure
     from hdrive_mbs.plots.report_html import write_report_html
 
@@ -143,7 +146,7 @@ def write_answer(result: Diagnosis, folder: Path) -> None:
     write_report_html(result, folder / "diagnosis.html")
 
 
-def write_improved(result: Diagnosis, folder: Path) -> None:
+def write_improved(result: Diagnosis, folder: Path, *, stays: bool = True) -> None:
     """The improved scene, and in a folder beside it the same with the inputs of each record, none of an earlier diagnosis left.
 
     A scene that holds Python functions is said not to be written.
@@ -155,9 +158,12 @@ def write_improved(result: Diagnosis, folder: Path) -> None:
             ours = file.readline().startswith(f"# {HEAD}")
         if ours:
             old.unlink()
-    scenes = [(result.improved, folder / "improved.toml", improved_words(result))]
+    here, beside = (folder, folder / FOLDER) if stays else (None, None)
+    scenes = [(result.improved, folder / "improved.toml", improved_words(result, here))]
     names = file_names(result.driven)
-    scenes += [(item.scene, folder / FOLDER / name, driven_words(item, name)) for item, name in zip(result.driven, names, strict=True)]
+    scenes += [
+        (item.scene, folder / FOLDER / name, driven_words(item, name, beside)) for item, name in zip(result.driven, names, strict=True)
+    ]
     for scene, path, head in scenes:
         try:
             save_scene(scene, path, head=head)
@@ -165,18 +171,19 @@ def write_improved(result: Diagnosis, folder: Path) -> None:
             print(f"{path} was not written: {error}", file=sys.stderr)
 
 
-def measured_in(paths: Sequence[Path], reading: Mapping[str, Any]) -> Records:
-    """Records of a folder and files together."""
+def measured_in(paths: Sequence[Path], reading: Mapping[str, Any], bench: Bench | Scene) -> Records:
+    """Records of a folder and files together; besides what is mapped, the columns that the bench has a name for."""
     from hdrive_mbs.records.collection import Records
     from hdrive_mbs.records.reading import read_records
 
     for path in paths:
         if not path.exists():
             raise FileFormatError(f"{path}: no such file or folder. Give measured records with --records.")
+    also = () if isinstance(bench, Scene) else (*bench.measured, *bench.inputs)
     files = [path for path in paths if not path.is_dir()]
-    found = [read_records(path, **reading) for path in paths if path.is_dir()]
+    found = [read_records(path, **reading, also=also) for path in paths if path.is_dir()]
     if files:
-        found.append(read_records(files, **reading))
+        found.append(read_records(files, **reading, also=also))
     return Records(records=tuple(record for records in found for record in records))
 
 

@@ -36,7 +36,7 @@ class HarmonicDrive(Component):
 
     ratio: float = parameter("1", "u, absolute value of the ratio with the circular spline held", above=1.0)
     stiffness: StiffnessLaw | Callable[[Value], Value] = option(
-        "law of the elastic torque M(twist), or a function of the twist", called_with=(("twist",),)
+        "law of the elastic torque M(twist), like hm.LinearStiffness(constant=8e3), or a function of the twist", called_with=(("twist",),)
     )
     damping: float = parameter("N m s/rad", "damping B_FS on the rate of twist", default=0.0, low=0.0)
     damping_in_gap: bool = option("whether B_FS acts inside the lost motion too (as (2)-(3) have it)", default=True)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from hdrive_mbs.components.component import Component, Flange
 from hdrive_mbs.components.inertia import add_viscous
 from hdrive_mbs.expression import Value
+from hdrive_mbs.loads.constant import ConstantTorque
 from hdrive_mbs.loads.law import LoadFunction, LoadLaw
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
@@ -24,7 +25,9 @@ class Load(Component):
 
     inertia: float = parameter("kg m^2", "inertia J_MR on its own axis", above=0.0)
     torque: LoadLaw | Callable[..., Value] = option(
-        "load law, or a function of (time) or (time, angle, speed); positive resists", called_with=(("time",), ("time", "angle", "speed"))
+        "load law, or a function of (time) or (time, angle, speed); positive resists; none if not given",
+        default=ConstantTorque(value=0.0),
+        called_with=(("time",), ("time", "angle", "speed")),
     )
     viscous: float = parameter("N m s/rad", "viscous drag on the absolute speed", default=0.0, low=0.0)
 

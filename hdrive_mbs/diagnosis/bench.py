@@ -165,7 +165,8 @@ class Bench:
             name = (missing or list(self.measured))[0]
             raise RecordError(
                 f"Record {record.name!r} has no column {name!r}, which {'drives the scene' if missing else 'the bench measures'}."
-                f" It has: {', '.join(record.channels)}."
+                f" It was read with: {', '.join(record.channels)}. A column of another name is mapped when reading:"
+                f" channels={{'its name': {name!r}}}, --channel 'its name'={name}."
             )
         units = units_of(self.scene.network())
         for name, item in self.measured.items():

@@ -17,6 +17,8 @@ from hdrive_mbs.diagnosis.assumed_bench import assumed_bench
 from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.diagnosis.candidate_checks import check_candidates, left_out
 from hdrive_mbs.diagnosis.candidates import candidates as all_candidates
+from hdrive_mbs.diagnosis.column_names import as_the_bench_names_them
+from hdrive_mbs.diagnosis.drive_scale_checks import drives_scaled
 from hdrive_mbs.diagnosis.driven import driven_scenes
 from hdrive_mbs.diagnosis.estimates import effect_estimates, nominal_estimates
 from hdrive_mbs.diagnosis.fit import Fitted
@@ -68,7 +70,8 @@ def diagnose(
 
     bench : what is known: scene, uncertain parameters, measured columns with their noise, inputs; of a scene alone the
         columns are those named like its channels, the noise is estimated and usual tolerances are assumed
-    records : one or several, checked (see ``Record.checked``)
+    records : one or several, checked (see ``Record.checked``); a column serves the bench under its name, or where it is mapped to
+        that name or to the channel that it measures
     candidates : effect classes to try; all of the library and whatever else has been imported if not given
     workers : processes; 1 if not given.  With more, a script needs the line ``if __name__ == "__main__":`` before the call
     folder : where fits are kept, so that an interrupted diagnosis goes on from there
@@ -85,6 +88,7 @@ def diagnose(
     started = time.monotonic()
     chosen = _records(records)
     known = bench if isinstance(bench, Bench) else assumed_bench(bench, chosen)
+    chosen = tuple(as_the_bench_names_them(known, record) for record in chosen)
     check_records(known, chosen)
     trials_of = {record.name: known.trials(record) for record in chosen}
     aside = (held_out,) if isinstance(held_out, str) else tuple(held_out)
@@ -97,7 +101,13 @@ def diagnose(
     if aside:
         check_trials(Simulator([trial for trial in trials if trial.held_out.all()], step, EVERY), factors, fitted=False)
     changed, reported = record_words(chosen)
-    warnings = (*changed, *not_driven(known, chosen, coarse, factors), *not_compared(known, chosen), *looks_scaled(coarse, factors))
+    warnings = (
+        *changed,
+        *not_driven(known, chosen, coarse, factors),
+        *not_compared(known, chosen),
+        *looks_scaled(coarse, factors),
+        *drives_scaled(known, chosen, coarse, factors),
+    )
     check_candidates(tried, coarse, factors)
     journal = None
     if folder is not None:

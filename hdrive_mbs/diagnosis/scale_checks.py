@@ -3,6 +3,8 @@
 A column y and its simulation s, both without their mean, are compared by least squares: y = c s.  Where they go together and c
 is 180/pi, 1000 or the like or one over it, the column was read in the wrong unit: gains of sensors are some per cent off.
 
+A column that turns against its simulation was read with the wrong sign, or the model's gear reverses where the real one does not.
+
 Where a cause is missing the model may do something else, and then a column is held against another one: how far two places turn
 against each other is a matter of ratios, which friction does not change.  What that shows is no refusal but a warning.
 """
@@ -38,6 +40,8 @@ CLEAR = 0.98
 """Squared correlation from which a factor is believed."""
 LIKELY = 0.9
 """The same from which one is worth a warning."""
+OPPOSED = 0.5
+"""Squared correlation from which the sense of a motion is taken for clear: with the wrong sign, the model goes quite another way."""
 TIED = 0.999
 """Squared correlation of two columns of the model from which one follows from the other."""
 NEAR = 0.1
@@ -71,13 +75,38 @@ def looks_scaled(simulator: Simulator, factors: Sequence[Factor]) -> tuple[str, 
     for trial, own in zip(simulator.trials, simulated, strict=True):
         if not own:
             continue
-        units = {channel.name: channel.unit for channel in trial.scene.network().channels}
+        network = trial.scene.network()
+        units = {channel.name: channel.unit for channel in network.channels}
         of = {column: units.get(item.channel, "") for column, item in trial.measured.items()}
         for column, why in (*_by_itself(trial, own, of), *_by_another(trial, own, of)):
             found.setdefault(
                 column, f"Record {trial.name!r}: column {column!r} looks {why} Give its unit when reading: --unit {column}=..."
             )
+        for column in () if network.is_lateral else _turned(trial, own, of):
+            found.setdefault(
+                column,
+                f"Record {trial.name!r}: column {column!r} runs against what {trial.measured[column].channel} of the nominal model does."
+                f" Turn its sign round when reading, --unit {column}='-1 {of[column]}', or the sense of the model, like"
+                " HarmonicDrive.output_sense.",
+            )
     return tuple(found.values())
+
+
+def _turned(trial: Trial, simulated: Mapping[str, FloatArray], units: Mapping[str, str]) -> Iterator[str]:
+    """Columns that move as the model does, but the other way round, where another one moves the same way."""
+    senses = {column: _sense(values, simulated[column]) for column, values in trial.columns.items() if units[column] in ("rad", "rad/s")}
+    if any(sense > 0.0 for sense in senses.values()):
+        yield from (column for column, sense in senses.items() if sense < 0.0)
+
+
+def _sense(values: FloatArray, reference: FloatArray) -> float:
+    """1 or -1 where two courses go together or against each other, 0 where neither is clear."""
+    there = np.isfinite(values) & np.isfinite(reference)
+    if there.sum() < 2:
+        return 0.0
+    y, s = (item[there] - np.mean(item[there]) for item in (values, reference))
+    power, own, both = float(s @ s), float(y @ y), float(y @ s)
+    return math.copysign(1.0, both) if power > 0.0 and own > 0.0 and both * both > OPPOSED * power * own else 0.0
 
 
 def _by_itself(trial: Trial, simulated: Mapping[str, FloatArray], units: Mapping[str, str]) -> Iterator[tuple[str, str]]:

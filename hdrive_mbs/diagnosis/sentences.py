@@ -191,6 +191,8 @@ def explaining(place: Place) -> str:
             f"in place of an unknown signal there {named(place.parameter)} off beyond its tolerance would do, and with less;"
             " this compares the two alone and is not the verdict"
         )
+    if place.probability > LIKELY and place.share < UNLIKELY:
+        return "the likeliest of all, though no signal there explains the gap of a linear model: what is missing changes the motion itself"
     return f"an unknown signal there explains {percent(place.share)} of the gap"
 
 

@@ -72,18 +72,19 @@ def read_records(
     resolution: Mapping[str, float] | None = None,
     repair: Mapping[str, Any] | None = None,
     refuse: bool = True,
+    also: Sequence[str] = (),
 ) -> Records:
     """Read every record of a file, of several files, or of a folder (its files of known formats, sorted by name).
 
     Each file is a run, named by its stem; channels of a file with different times become records
     ``run:group``.  With several records a channel that one of them lacks is left out there, and refused
-    when all lack it.  Other arguments as in ``read_record``; names of ``noise`` and ``resolution`` that a
-    record lacks are left out there.
+    when all lack it; names of ``also`` are read besides ``channels`` where there are such.  Other arguments as
+    in ``read_record``; names of ``noise`` and ``resolution`` that a record lacks are left out there.
     """
     files = record_files(paths)
     found: list[Record] = []
     for path in files:
-        found.extend(_read(path, channels, units or {}, time, lenient=len(files) > 1))
+        found.extend(_read(path, channels, units or {}, time, lenient=len(files) > 1, also=also))
     for pattern in Request.of(files[0], channels, {}, None).channels or ():
         if not any(fits(pattern, name) or fits(pattern, base_name(name)) for record in found for name in record.channels):
             known = sorted({name for record in found for name in record.channels})
@@ -161,9 +162,16 @@ def record_files(paths: str | os.PathLike[str] | Iterable[str | os.PathLike[str]
     return files
 
 
-def _read(path: Path, channels: Channels | None, units: Mapping[str, str], time: str | float | None, lenient: bool = False) -> list[Record]:
+def _read(
+    path: Path,
+    channels: Channels | None,
+    units: Mapping[str, str],
+    time: str | float | None,
+    lenient: bool = False,
+    also: Sequence[str] = (),
+) -> list[Record]:
     """All records of one file: channels by the time that they share."""
-    request = Request.of(path, channels, units, time)
+    request = Request.of(path, channels, units, time, also)
     file_format = format_of(path)
     contents = file_format.contents(path, request.wanted)
     request.check_units(contents)

@@ -14,30 +14,38 @@ Channels = Mapping[str, str | None] | Sequence[str]
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """What the caller asked for, of one file."""
+    """What the caller asked for, of one file.
+
+    also : names that are read besides the chosen channels where the file has them
+    """
 
     path: Path
     channels: Mapping[str, str | None] | None
     units: Mapping[str, str]
     time: str | float | None
+    also: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, path: Path, channels: Channels | None, units: Mapping[str, str], time: str | float | None) -> Request:
+    def of(
+        cls, path: Path, channels: Channels | None, units: Mapping[str, str], time: str | float | None, also: Sequence[str] = ()
+    ) -> Request:
         if isinstance(channels, str):
             channels = [channels]
         chosen = None if channels is None else dict(channels) if isinstance(channels, Mapping) else dict.fromkeys(channels)
-        return cls(path=path, channels=chosen, units=units, time=time)
+        return cls(path=path, channels=chosen, units=units, time=time, also=tuple(also))
 
     @property
     def wanted(self) -> Wanted:
         """Which columns the reader has to give: the chosen ones and the time."""
         if self.channels is None:
             return Wanted()
-        return Wanted((*self.channels, *([self.time] if isinstance(self.time, str) else [])))
+        return Wanted((*self.channels, *self.also, *([self.time] if isinstance(self.time, str) else [])))
 
     def selects(self, name: str) -> bool:
         """Whether a channel is chosen."""
-        return self.channels is None or any(fits(pattern, name) or fits(pattern, base_name(name)) for pattern in self.channels)
+        if self.channels is None or name in self.also:
+            return True
+        return any(fits(pattern, name) or fits(pattern, base_name(name)) for pattern in self.channels)
 
     def quantity(self, name: str) -> str | None:
         """The channel of the scene for a channel, if the caller said."""

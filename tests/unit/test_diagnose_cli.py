@@ -158,7 +158,7 @@ def test_the_improved_scene_says_whose_inputs_it_holds_and_runs_with_the_file_of
     head = [line for line in (out / "improved.toml").read_text("utf-8").splitlines() if line.startswith("#")]
     assert "holds motor.characteristic (driven by column 'torque" in head[0]
     assert "as the bench file has it, not as in a record" in head[0]
-    assert head[-1].endswith(f"hdrive-mbs run improved.toml --effects {Path(own).name}")
+    assert head[-1].endswith(f"hdrive-mbs run improved.toml --effects ../{Path(own).name}")
     assert "as the bench file has it" in " ".join((out / "diagnosis.txt").read_text("utf-8").split())
     assert load_scene(out / "improved.toml", types=[kind]) == improved
     script = "import sys; from hdrive_mbs.cli.main import main; sys.argv[0] = 'hdrive-mbs'; main()"
@@ -204,6 +204,15 @@ def test_columns_are_mapped_and_given_units_on_the_command_line(asked: list[dict
     column = asked[0]["records"]["a"]["motor.speed"]
     assert column.unit == "rad/s"
     assert np.max(column.values) == pytest.approx(np.max(np.sin(20.0 * 1e-3 * np.arange(80))) * np.pi / 30.0, rel=1e-5)
+
+
+def test_a_column_that_is_mapped_leaves_the_columns_of_the_bench_in_place(asked: list[dict[str, Any]], tmp_path: Path) -> None:
+    file = tmp_path / "a.csv"
+    rows = [f"{k * 1e-3:.3f},{k % 7},{k % 5},{k % 3}" for k in range(80)]
+    file.write_text("\n".join(["time [s],n_load [rad],motor_angle [rad],spare", *rows]) + "\n")
+    words = ("--channel", "n_load=load_encoder", "--out", str(tmp_path / "out"))
+    assert invoke(written(tmp_path, BENCH), "--records", str(file), *words).exit_code == 0
+    assert sorted(asked[0]["records"]["a"].channels) == ["motor_angle", "n_load"]  # and not the spare one, which has no unit
 
 
 def test_effects_of_an_own_file_are_tried_beside_the_library(asked: list[dict[str, Any]], tmp_path: Path) -> None:

@@ -14,7 +14,9 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
 from hdrive_mbs.diagnosis.candidates import candidates
+from hdrive_mbs.diagnosis.column_names import as_the_bench_names_them
 from hdrive_mbs.diagnosis.diagnose import diagnose, factors_of
+from hdrive_mbs.diagnosis.drive_scale_checks import drives_scaled
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.input_checks import check_trials, not_compared, not_driven
 from hdrive_mbs.diagnosis.measured import Measured
@@ -108,6 +110,26 @@ def test_an_angle_is_held_against_a_speed_of_another_place_too() -> None:
     assert "beside 'motor_speed'" in said
 
 
+def test_a_column_that_runs_the_other_way_is_seen_and_how_it_is_turned_round() -> None:
+    coarse = Simulator(bench().trials(changed("load_angle", lambda values: -0.8 * values)[0]), 1e-3, 4)
+    [said] = looks_scaled(coarse, factors_of(bench()))
+    assert "column 'load_angle' runs against what load_encoder of the nominal model does" in said
+    assert "--unit load_angle='-1 rad'" in said
+    for right in quiet():
+        assert looks_scaled(Simulator(bench().trials(right), 1e-3, 4), factors_of(bench())) == ()
+
+
+def test_a_driving_column_in_another_unit_is_seen_by_what_the_model_then_does() -> None:
+    turns = changed("speed_reference", lambda values: values * 60.0 / (2.0 * math.pi))
+    for given, wrong in ((turns, True), (quiet(), False)):
+        coarse = Simulator([trial for record in given for trial in bench().trials(record)], 1e-3, 4)
+        said = drives_scaled(bench(), given, coarse, factors_of(bench()))
+        assert len(said) == wrong
+        if wrong:
+            assert said[0].startswith("Column 'speed_reference', which drives the scene, looks as if its numbers were in rpm")
+            assert said[0].endswith("--unit speed_reference=...")
+
+
 def test_what_is_no_record_is_refused_and_one_class_is_a_list_of_one() -> None:
     with pytest.raises(hm.ParameterError, match=r"Read it first: hm\.diagnose\(bench, hm\.read_records\('run_a\.csv'\)\)"):
         diagnose(bench(), "run_a.csv")  # type: ignore[arg-type]
@@ -121,6 +143,36 @@ def test_a_measured_column_that_no_record_has_is_warned_of_at_the_top() -> None:
     assert said == "'load_angle', which the bench measures, was not compared in 'staircase', 'load_cycle': no such column there."
     assert report_text(found).splitlines()[3].startswith("WARNING: 'load_angle', which the bench measures, was not compared")
     assert report_html(found).index("Warning: &#x27;load_angle&#x27;") < report_html(found).index("No gap beyond noise")
+
+
+def called_otherwise(record: Record, names: Mapping[str, tuple[str, str]]) -> Record:
+    """Columns under other names, mapped to something."""
+    new = {old: item.replacing(name=name, quantity=quantity) for old, (name, quantity) in names.items() for item in [record[old]]}
+    return record.with_channels(new.get(item.name, item) for item in record)
+
+
+def test_columns_of_other_names_serve_the_bench_where_they_are_mapped() -> None:
+    """To the channel that the bench measures, or to the bench's own name: that of a column that drives the scene, say."""
+    first = quiet()[0]
+    mapped = called_otherwise(first, {"motor_angle": ("phi", "motor_encoder"), "speed_reference": ("wanted", "speed_reference")})
+    assert "motor_angle" not in mapped.channels
+    [plain], [named] = bench().trials(first), bench().trials(as_the_bench_names_them(bench(), mapped))
+    assert named.scene == plain.scene
+    assert list(named.columns) == list(plain.columns)
+    np.testing.assert_array_equal(named.columns["motor_angle"], plain.columns["motor_angle"])
+    assert run(given=(mapped, quiet()[1]), kinds=(hm.ViscousDrag,)).warnings == ()
+
+
+def test_two_columns_for_one_of_the_bench_are_refused() -> None:
+    first = called_otherwise(quiet()[0], {"motor_angle": ("phi", "motor_encoder")})
+    twice = first.with_channels([*first, first["phi"].replacing(name="phi_2", quantity="motor_angle")])
+    with pytest.raises(hm.RecordError, match=r"'phi' and 'phi_2' are both mapped to what the bench calls 'motor_angle'; map one of them"):
+        as_the_bench_names_them(bench(), twice)
+
+
+def test_a_column_that_drives_and_is_missing_says_how_another_one_is_mapped() -> None:
+    given = (quiet()[0].without("speed_reference"), quiet()[1])
+    refused(hm.RecordError, "no column 'speed_reference', which drives the scene", "--channel 'its name'=speed_reference", given=given)
 
 
 def test_a_column_that_is_spelt_otherwise_than_in_the_bench_is_asked_about() -> None:
@@ -159,7 +211,9 @@ def test_effects_with_states_of_their_own_can_be_run_on_a_record_of_a_kilohertz(
 
 def test_a_record_without_an_input_names_it_and_what_there_is() -> None:
     given = (quiet()[0].without("load_torque"),)
-    refused(hm.RecordError, "'staircase' has no column 'load_torque', which drives the scene", "It has: motor_torque", given=given)
+    refused(
+        hm.RecordError, "'staircase' has no column 'load_torque', which drives the scene", "It was read with: motor_torque", given=given
+    )
 
 
 def test_a_record_without_any_measured_column_is_refused() -> None:

@@ -104,10 +104,11 @@ def test_the_command_at_the_head_of_a_records_scene_runs_it(tmp_path: Path, monk
     head = [line for line in file.read_text("utf-8").splitlines() if line.startswith("#")]
     words = head[1].removeprefix("# hdrive-mbs ").split()
     assert "--initial" in words
-    monkeypatch.chdir(tmp_path)
+    assert head[0].endswith("In the folder of this file:")
+    monkeypatch.chdir(file.parent)
     done = CliRunner().invoke(app, [*words, "--out", "out"])
     assert done.exit_code == 0, done.output
-    run = hm.Response.load(tmp_path / "out" / "response.npz")
+    run = hm.Response.load(file.parent / "out" / "response.npz")
     assert run.times[-1] == pytest.approx(driven[0].duration)
     assert run.at("motor.speed", np.zeros(1))[0] == 40.0
     own = simulator.columns(fitted.hypothesis, fitted.z)[0]["load_angle"]

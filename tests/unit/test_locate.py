@@ -160,6 +160,15 @@ def test_motor_and_wave_generator_are_tied_where_the_shaft_between_them_is_stiff
     assert pair - {places[0].at} <= set(places[0].tied)
 
 
+def test_a_steady_torque_too_slow_to_be_placed_leaves_a_doubt() -> None:
+    simulator = recorded("load", np.full(SAMPLES, 100.0))
+    located = Localiser(simulator, fitted(simulator))
+    assert located.doubt.startswith("Not reliable here: the best single place gains ")
+    assert located.places()[0].probability < 0.5
+    clear = recorded("load", burst(3.0))
+    assert Localiser(clear, fitted(clear)).doubt == ""
+
+
 def test_the_course_of_the_force_comes_out() -> None:
     force = burst(2.0)
     simulator = recorded("load", force)

@@ -338,8 +338,8 @@ def test_values_are_given_by_name_and_unknown_names_are_refused() -> None:
         hm.Inertia()  # type: ignore[call-arg]
     with pytest.raises(ParameterError, match=r"Rotor lacks .*: polar_inertia \[kg m\^2\] .*; transverse_inertia \[kg m\^2\]"):
         hm.Rotor(mass=2.0)  # type: ignore[call-arg]
-    with pytest.raises(ParameterError, match=r"Load lacks .*: torque : load law, or a function"):
-        hm.Load(inertia=1.0)  # type: ignore[call-arg]
+    with pytest.raises(ParameterError, match=r"Motor lacks .*: characteristic : torque law: a characteristic"):
+        hm.Motor(inertia=1.0)  # type: ignore[call-arg]
     with pytest.raises(PlaceError, match=r"No field 'mass'\. Inertia has: inertia, viscous"):
         hm.Inertia(inertia=1.0).replacing(mass=2.0)
 

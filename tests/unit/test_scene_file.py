@@ -50,6 +50,7 @@ from tests.verification.scenes import catalogue, kloss_motor, train
 PLATE: dict[str, float] = {"rated_power": 550.0, "rated_speed": 147.65, "pole_pairs": 2.0, "breakdown_ratio": 2.4}
 LAWS: tuple[Described, ...] = (
     catalogue(),
+    hm.LinearStiffness(constant=1.1e4),
     hm.CubicStiffness(linear=1.1e4, cubic=2.2e8, largest_twist=0.004),
     hm.ContinuousStiffness(lost_motion=1e-3, edge_stiffness=1e4, quadratic=0.0, cubic=1e9, largest_twist=0.005),
     hm.JumpTorqueStiffness(lost_motion=1e-3, linear=2e4, cubic=1e8),

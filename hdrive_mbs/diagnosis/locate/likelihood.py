@@ -94,6 +94,11 @@ class Explained:
         """Sum of squares that is left."""
         return float(sum(fit.left.sum() for fit in self.fits))
 
+    @property
+    def above_noise(self) -> float:
+        """Log likelihood that is missing to that of noise alone: sum of n/2 log(rho), n = left/rho where rho > 1."""
+        return float(sum(np.sum(0.5 * fit.left / fit.scale * np.log(fit.scale)) for fit in self.fits))
+
 
 Place = Sequence[Directions | None]
 """Directions in each trial, None where it does not show."""
