@@ -15,6 +15,7 @@ import numpy.typing as npt
 from hdrive_mbs.analysis.coarse_step import coarse_step, warn_of
 from hdrive_mbs.analysis.default_solver import default_solver
 from hdrive_mbs.analysis.initial_values import finite_number, initial_values
+from hdrive_mbs.analysis.laws_at_start import check_laws_at_start
 from hdrive_mbs.analysis.main_channels import main_channels
 from hdrive_mbs.analysis.result import Result, write_csv
 from hdrive_mbs.analysis.stable_step import check_run, check_start
@@ -150,8 +151,8 @@ def simulate(
     lowering : "python" runs every law as a Python callback (for comparison only)
 
     Raises SimulationError when the run diverged or stopped early, or the step of an explicit solver is beyond its limit of
-    stability; ParameterError for bad arguments.  Warns CoarseStepWarning, and says so in the status, where the step of
-    an implicit solver is too long for the motion that comes out.
+    stability; LawError for a law that gives no number at the start; ParameterError for bad arguments.  Warns
+    CoarseStepWarning, and says so in the status, where the step of an implicit solver is too long for the motion that comes out.
     """
     response = integrate(
         scene,
@@ -196,6 +197,7 @@ def integrate(
         raise ParameterError(f"sample_step = {sample_step:g} s: must be at least 0 s (0 records every step of the solver).")
     network = scene.network()
     starts = initial_values(network, initial_speed, initial or {})
+    check_laws_at_start(network, starts)
     remark = ""
     if solver is None:
         chosen = default_solver(network, duration, initial_speed, initial)

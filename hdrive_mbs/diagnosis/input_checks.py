@@ -16,7 +16,7 @@ import numpy.typing as npt
 from hdrive_mbs.diagnosis.bench import Bench, units_of
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.scale_checks import check_scale
-from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.simulator import Simulator, chi_square
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import ParameterError, RecordError, UnitError, unknown_place
@@ -30,6 +30,8 @@ LEAST = 16
 """Values of a column that a fit has to see, and of all columns together that it must not see."""
 MOVES = 10.0
 """Standard deviations of its noise by which a column has to vary somewhere, or nothing was excited."""
+FAR = 100.0
+"""Mean square of the nominal residual (noise: 1) from which a model that nothing measured drives is said to be far away."""
 START, SHARE = 20.0, 0.1
 """A record does not start like the scene where a speed differs by that many standard deviations and that share of its range."""
 ALIKE = 0.7
@@ -131,22 +133,30 @@ def check_trials(simulator: Simulator, factors: Sequence[Factor], *, fitted: boo
 
 
 def not_driven(bench: Bench, records: Sequence[Record], simulator: Simulator, factors: Sequence[Factor]) -> tuple[str, ...]:
-    """Says so, and what to do, where no column drives the scene and the model stands still while the records move."""
+    """Says so, and what to do, where no column drives the scene and the model stands still while the records move, or is far from them."""
     if bench.inputs or any(trial.motions for trial in simulator.trials):
         return ()
     hypothesis = Hypothesis(factors=tuple(factors))
     simulated = simulator.columns(hypothesis, np.zeros(hypothesis.size))
-    for trial, own in zip(simulator.trials, simulated, strict=True):
-        if not own or any(_range(own[column]) > MOVES * trial.measured[column].total for column in trial.columns):
-            return ()
+    still = all(own and not _shows(own, trial) for trial, own in zip(simulator.trials, simulated, strict=True))
+    [residuals] = simulator.residuals(hypothesis, [np.zeros(hypothesis.size)])
+    if not still and residuals is not None and chi_square(residuals, simulator.used) < FAR:
+        return ()
+    how = "the model stands still while the records move" if still else "the model runs by laws of its own, far from what was measured"
     unused = sorted({name for record in records for name in record.channels if name not in bench.measured})
     which = repr(unused[0] if unused else "motor_torque")
     others = f" Columns that are not used: {', '.join(unused)}." if unused else ""
     return (
-        "No column drives the scene, and the model stands still while the records move: whatever is said below is about that."
-        f" Write a bench() that says which column drives what, with Bench(..., inputs={{{which}: Input(path='motor.characteristic',"
-        f" law=lambda t, v: hm.TorqueHistory(times=t, torques=v))}}), see docs/diagnosis.md.{others}",
+        f"No column drives the scene, and {how}: whatever is said below is about that."
+        f" If a column holds what drove the bench, write a bench() that says so, with Bench(..., inputs={{{which}:"
+        " Input(path='motor.characteristic', law=lambda t, v: hm.TorqueHistory(times=t, torques=v))}), see docs/diagnosis.md."
+        f"{others}",
     )
+
+
+def _shows(simulated: Mapping[str, FloatArray], trial: Trial) -> bool:
+    """Whether a column of the model moves by more than noise."""
+    return any(_range(simulated[column]) > MOVES * trial.measured[column].total for column in trial.columns)
 
 
 def not_compared(bench: Bench, records: Sequence[Record]) -> tuple[str, ...]:

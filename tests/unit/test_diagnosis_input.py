@@ -38,6 +38,8 @@ from hdrive_mbs.records.record import Record
 from hdrive_mbs.records.repair import repaired
 from tests.unit.diagnosis_cases import DURATION, KNOWLEDGE, STEP, bench, quiet, records
 
+CONSTANT = hm.SpeedTable(times=(0.0, 0.1, 10.0), speeds=(0.0, 50.0, 50.0))
+
 
 def run(found: Bench | None = None, given: tuple[Record, ...] | None = None, kinds: tuple[type[Effect], ...] = ()) -> Diagnosis:
     return diagnose(found or bench(), quiet() if given is None else given, candidates=kinds, pictures=False, step=1e-3)
@@ -192,6 +194,18 @@ def test_a_scene_that_no_column_drives_is_warned_of() -> None:
     assert "inputs={'motor_torque': Input(path=" in said
     simulator = Simulator(bench().trials(quiet()[0]), 1e-3)
     assert not_driven(bench(), quiet(), simulator, factors_of(bench())) == ()
+
+
+def test_a_scene_that_runs_by_a_law_of_its_own_far_from_the_record_is_warned_of() -> None:
+    """Its servo follows a reference that the record knows nothing of; where the model is near the record, nothing is said."""
+    alone = dataclasses.replace(bench(), inputs={}, scene=bench().scene.replacing({"motor.characteristic.reference": CONSTANT}))
+    [said] = not_driven(alone, quiet(), Simulator(alone.trials(quiet()[0]), 1e-3), factors_of(alone))
+    assert said.startswith("No column drives the scene, and the model runs by laws of its own, far from what was measured")
+    assert "Columns that are not used: load_torque, speed_reference." in said
+    [near] = Simulator(alone.trials(quiet()[0]), 1e-3).columns_at(Hypothesis(factors_of(alone)), [np.zeros(len(factors_of(alone)))])[0]
+    [trial] = alone.trials(quiet()[0])
+    itself = Simulator([dataclasses.replace(trial, columns=near)], 1e-3)
+    assert not_driven(alone, quiet(), itself, factors_of(alone)) == ()
 
 
 def test_effects_with_states_of_their_own_can_be_run_on_a_record_of_a_kilohertz() -> None:

@@ -17,7 +17,7 @@ import hdrive_mbs as hm
 from hdrive_mbs.analysis.initial_values import initial_values
 from hdrive_mbs.engine.assembly import assemble
 from hdrive_mbs.engine.simulation import run
-from hdrive_mbs.errors import HdriveError, ParameterError, PlaceError, SimulationError
+from hdrive_mbs.errors import HdriveError, LawError, ParameterError, PlaceError, SimulationError
 from tests.verification.scenes import train
 
 SOLVERS: dict[str, hm.Solver] = {
@@ -65,6 +65,12 @@ def test_an_adaptive_run_into_infinity_ends_and_does_not_creep_for_ever() -> Non
 def test_a_law_that_gives_no_number_ends_the_run() -> None:
     with pytest.raises(SimulationError, match=r"not finite from t = 0\.\d+ s on"):
         hm.simulate(rotor(lambda w: np.sqrt(0.05 - w)), 1.0, solver=hm.RungeKutta4(step=1e-2))
+
+
+def test_a_law_that_gives_no_number_at_the_start_is_named() -> None:
+    with pytest.raises(LawError, match=r"motor\.torque gives nan on motor at t = 0 \(angle = 0 rad, speed = 0 rad/s\).*np\.sign"):
+        hm.simulate(rotor(lambda w: -2.0 * w / abs(w)), 1.0)
+    assert hm.simulate(rotor(lambda w: -2.0 * w / abs(w)), 0.1, initial_speed=1.0)["motor.speed"].values[-1] == pytest.approx(0.8)
 
 
 def test_a_step_that_is_too_long_for_a_stiff_shaft_is_noticed() -> None:
