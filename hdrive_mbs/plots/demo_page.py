@@ -108,7 +108,10 @@ def _verdict(diagnosis: Diagnosis) -> str:
         return said
     gap = diagnosis.gap
     then = f", with the cause {_short(gap.effect.value)}" if diagnosis.causes else ""
-    return f"{said} Gap on stretches that no fit saw, in standard deviations of the noise: refitted {_short(gap.refit.value)}{then}."
+    return (
+        f"{said} Gap on stretches that no fit saw, in standard deviations of the noise: nominal"
+        f" {_short(gap.nominal.value)}, refitted {_short(gap.refit.value)}{then}; noise alone is 1."
+    )
 
 
 def _run_up(results: DemoResults) -> Iterator[str]:
@@ -189,7 +192,7 @@ def _bearings(results: DemoResults) -> Iterator[str]:
         )
         for name, run in results.runs.items()
     )
-    heads = ("bearings", "coordinates", "peak [µm]", "against full", "at [rad/s]", "critical speeds [rad/s]", "run [s]")
+    heads = ("bearings", "coordinates", "peak [µm]", "against full", "at [rad/s]", "undamped critical speeds [rad/s]", "run [s]")
     yield from table_of(Table(heads=heads, rows=rows), f"Whirl of the {_plain(results.rotor)} in the run-up, 0-peak")
     peaks = ", ".join(f"{name} {row[2]} µm at {row[4]} rad/s" for name, row in zip(results.runs, rows, strict=True))
     text = f"Whirl of the {_plain(results.rotor)} over its speed near the critical speeds, one curve a model: {peaks}."

@@ -23,6 +23,9 @@ h3 { font-size: 1rem; margin: 1.2rem 0 .3rem; }
 .none { border-color: #009E73; background: #eef8f4; } .unknown { border-color: #D55E00; background: #fdf3ec; }
 .table { overflow-x: auto; margin: .6rem 0; } table { border-collapse: collapse; font-size: .85rem; }
 table { overflow-wrap: normal; }
+.table { background: linear-gradient(to right, #fff 30%, #fff0), linear-gradient(to left, #fff 30%, #fff0) 100% 0,
+  linear-gradient(to right, #0003, #0000), linear-gradient(to left, #0003, #0000) 100% 0; background-repeat: no-repeat;
+  background-size: 2rem 100%, 2rem 100%, .8rem 100%, .8rem 100%; background-attachment: local, local, scroll, scroll; }
 caption { text-align: left; padding: .2rem 0; color: #444; }
 th, td { padding: .2rem .6rem .2rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid #ddd; }
 .number { text-align: right; white-space: nowrap; }
