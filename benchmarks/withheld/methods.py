@@ -11,6 +11,7 @@ from typing import Any
 
 from benchmarks.withheld.answer import answer_of
 from benchmarks.withheld.finding import finding_of
+from benchmarks.withheld.memory import Memory
 from benchmarks.withheld.names import names_of
 from benchmarks.withheld.raw import places_of, raw_of
 from hdrive_mbs.diagnosis.bench import Bench
@@ -28,9 +29,6 @@ class Solved:
     raw: Mapping[str, Any] = field(default_factory=dict)
 
 
-KIB = 1024
-"""Bytes in the unit of ru_maxrss on Linux."""
-
 Method = Callable[..., Solved]
 """(bench, folder of a case) -> answer; a method may ask for more, by name: raw, truths.  A case has the name of its folder."""
 
@@ -47,28 +45,19 @@ def records_of(folder: Path) -> list[Record]:
     return [read_record(path) for path in sorted(folder.glob("*.parquet"))]
 
 
-def memory_at_most(workers: int) -> int:
-    """Bytes that this process and its workers have held at once, at most: each as if all had been as large as the largest ever was."""
-    try:
-        import resource
-    except ImportError:  # not on Windows
-        return 0
-    largest = [resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    return KIB * (largest[0] + (workers * largest[1] if workers > 1 else 0))
-
-
 def full(bench: str, folder: Path, workers: int = 1) -> Solved:
     """The diagnosis as it is delivered, without pictures."""
     known, kept = bench_of(bench), []
     start = time.process_time()
-    diagnosis = diagnose(known, records_of(folder), workers=workers, pictures=False, watch=kept.append)
+    with Memory() as memory:
+        diagnosis = diagnose(known, records_of(folder), workers=workers, pictures=False, watch=kept.append)
     evidence: Evidence = kept[0]
     raw = {
         "case": folder.name,
         "bench": bench,
         "seconds": diagnosis.seconds,
         "processor_seconds": time.process_time() - start,
-        "memory_at_most": memory_at_most(workers),
+        "memory_peak": memory.peak,
         **raw_of(evidence, known.groups),
         "where": {place.at: place.probability for place in diagnosis.where},
         "places": places_of(diagnosis),

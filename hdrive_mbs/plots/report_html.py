@@ -97,7 +97,10 @@ def _trace(diagnosis: Diagnosis, trace: Trace) -> str:
     text = (
         f"Column {named(trace.column)} of record {trace.record} over {digits(float(trace.times[-1]), 3)} s, and below it what models leave."
     )
-    said = f"{trace.record}, {named(trace.column)}. Grey ground: held out, no fit saw it. Grey band below, under what is at the noise: plus and minus two noise sigmas."
+    said = (
+        f"{trace.record}, {named(trace.column)}. Grey ground: held out, no fit saw it."
+        " Grey band below, under what is at the noise: plus and minus two noise sigmas."
+    )
     return figure(axes, text, said, points=True)
 
 
