@@ -197,7 +197,6 @@ def integrate(
         raise ParameterError(f"sample_step = {sample_step:g} s: must be at least 0 s (0 records every step of the solver).")
     network = scene.network()
     starts = initial_values(network, initial_speed, initial or {})
-    check_laws_at_start(network, starts)
     remark = ""
     if solver is None:
         chosen = default_solver(network, duration, initial_speed, initial)
@@ -206,6 +205,7 @@ def integrate(
         raise ParameterError(f"solver = {solver!r}: must be a Solver, for instance DormandPrince() or RungeKutta4(step=1e-5).")
     solver = for_tables(solver, scene, duration)
     assembly = assemble(network, lowering=lowering)
+    check_laws_at_start(network, starts)
     check_start(assembly, solver, duration, starts)
     every = 0.0 if estimate_error else sample_step  # between thin samples the interpolation would err more than the solver
 
