@@ -42,6 +42,6 @@ class Memory:
 def _held(process: psutil.Process) -> int:
     try:
         found = process.memory_full_info()
-    except psutil.Error:  # it has ended meanwhile
+    except psutil.Error:  # it has ended meanwhile, or is not ours
         return 0
     return int(getattr(found, "pss", found.rss))

@@ -1,4 +1,4 @@
-"""Whether every law gives a number where a run begins."""
+"""Whether every law gives a number where a run begins; asked once all have been read, so that other faults are named before."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hdrive_mbs.errors import LawError
+from hdrive_mbs.errors import HdriveError, LawError
+from hdrive_mbs.expression import Value
+from hdrive_mbs.network.elements import Element
+from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Network
 
 
@@ -19,7 +22,7 @@ def check_laws_at_start(network: Network, starts: Mapping[str, Mapping[str, floa
     moment = network.moment(np.float64(0.0), angles, speeds, states)
     with np.errstate(all="ignore"):
         for element in network.elements:
-            for target, value in element.contribution(moment).items():
+            for target, value in _contribution(element, moment).items():
                 if not np.isfinite(np.asarray(value, float)).all():
                     at = ", ".join(
                         f"{name} = {float(values[target]):.6g} {unit}"
@@ -30,6 +33,15 @@ def check_laws_at_start(network: Network, starts: Mapping[str, Mapping[str, floa
                         f"{element.name} gives {float(np.asarray(value, float).ravel()[0])} on {target} at t = 0{f' ({at})' if at else ''}:"
                         " no finite number. Correct the law there, like np.sign(w) or np.tanh(w/small) in place of w/abs(w)."
                     )
+
+
+def _contribution(element: Element, moment: Moment) -> dict[str, Value]:
+    try:
+        return element.contribution(moment)
+    except HdriveError:
+        raise
+    except Exception as error:
+        raise LawError(f"{element.name}: the law fails at the start ({type(error).__name__}: {error}). Correct the function.") from error
 
 
 def _lateral(network: Network, name: str) -> bool:

@@ -8,7 +8,7 @@ import os
 import re
 import shutil
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -179,12 +179,20 @@ def measured_in(paths: Sequence[Path], reading: Mapping[str, Any], bench: Bench 
     for path in paths:
         if not path.exists():
             raise FileFormatError(f"{path}: no such file or folder. Give measured records with --records.")
-    also = () if isinstance(bench, Scene) else (*bench.measured, *bench.inputs)
+    mapped = set((reading["channels"] or {}).values())
+    also = () if isinstance(bench, Scene) else tuple(_unmapped(bench, mapped))
     files = [path for path in paths if not path.is_dir()]
     found = [read_records(path, **reading, also=also) for path in paths if path.is_dir()]
     if files:
         found.append(read_records(files, **reading, also=also))
     return Records(records=tuple(record for records in found for record in records))
+
+
+def _unmapped(bench: Bench, mapped: Collection[str]) -> Iterator[str]:
+    """Columns that the bench has a name for and that nothing is mapped to."""
+    for name in (*bench.measured, *bench.inputs):
+        if name not in mapped and (name not in bench.measured or bench.measured[name].channel not in mapped):
+            yield name
 
 
 def _job(

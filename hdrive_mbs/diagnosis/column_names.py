@@ -16,13 +16,11 @@ def as_the_bench_names_them(bench: Bench, record: Record) -> Record:
     Raises RecordError where two columns are mapped to the same.
     """
     for name in (*bench.measured, *bench.inputs):
-        if name in record.channels:
-            continue
         meant = list(_meant(bench, record, name))
-        if len(meant) > 1:
+        if len(meant) > 1 or (meant and name in record.channels):
+            both = " and ".join(map(repr, [*meant, *([name] if name in record.channels else [])]))
             raise RecordError(
-                f"Record {record.name!r}: {' and '.join(map(repr, meant))} are both mapped to what the bench calls {name!r};"
-                " map one of them."
+                f"Record {record.name!r}: {both} would both be what the bench calls {name!r}; map one of them, or leave one out."
             )
         for old in meant:
             record = record.renamed({old: name})
@@ -32,7 +30,11 @@ def as_the_bench_names_them(bench: Bench, record: Record) -> Record:
 
 
 def _meant(bench: Bench, record: Record, name: str) -> Iterator[str]:
-    asked = {name, *((bench.measured[name].channel,) if name in bench.measured else ())}
+    """Columns of names that the bench does not know, mapped to one of its names, or to a channel that this one alone measures."""
+    channels = [item.channel for other, item in bench.measured.items() if other not in record.channels or other == name]
+    channel = bench.measured[name].channel if name in bench.measured else None
     for own, item in record.channels.items():
-        if item.quantity in asked and own not in bench.measured and own not in bench.inputs:
+        if own in bench.measured or own in bench.inputs or item.quantity is None:
+            continue
+        if item.quantity == name or (item.quantity == channel and channels.count(channel) == 1):
             yield own

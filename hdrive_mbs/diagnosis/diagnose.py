@@ -103,7 +103,7 @@ def diagnose(
     changed, reported = record_words(chosen)
     warnings = (
         *changed,
-        *not_driven(known, chosen, coarse, factors),
+        *not_driven(known, chosen, coarse, factors, bare=not isinstance(bench, Bench)),
         *not_compared(known, chosen),
         *looks_scaled(coarse, factors),
         *drives_scaled(known, chosen, coarse, factors),

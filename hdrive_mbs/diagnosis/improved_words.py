@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 import re
+import shlex
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -40,7 +41,7 @@ def improved_words(diagnosis: Diagnosis, folder: Path | None = None) -> tuple[st
         )
     files = own_files(diagnosis.improved, folder)
     if files:
-        options = " ".join(f"--effects {file}" for file in files)
+        options = " ".join(f"--effects {shlex.quote(file)}" for file in files)
         found.append(f"The improved scene has classes of your own: hdrive-mbs run improved.toml {options}")
     return tuple(found)
 
@@ -58,7 +59,7 @@ def file_names(driven: Sequence[Driven]) -> tuple[str, ...]:
 def driven_words(item: Driven, file: str, folder: Path | None = None) -> tuple[str, ...]:
     """Head of the scene file of a record: how it is run in its own folder, which own files are named from if it is given."""
     starts = "".join(f" --initial {name}={value!r}" for name, value in item.initial.items())
-    effects = "".join(f" --effects {name}" for name in own_files(item.scene, folder))
+    effects = "".join(f" --effects {shlex.quote(name)}" for name in own_files(item.scene, folder))
     return (
         f"{HEAD} {item.record!r}. In the folder of this file:",
         f"hdrive-mbs run {file} --duration {item.duration!r}{starts}{effects}",

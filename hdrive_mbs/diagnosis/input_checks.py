@@ -132,16 +132,22 @@ def check_trials(simulator: Simulator, factors: Sequence[Factor], *, fitted: boo
             _check_start(trial, column, own[column], units)
 
 
-def not_driven(bench: Bench, records: Sequence[Record], simulator: Simulator, factors: Sequence[Factor]) -> tuple[str, ...]:
-    """Says so, and what to do, where no column drives the scene and the model stands still while the records move, or is far from them."""
+def not_driven(
+    bench: Bench, records: Sequence[Record], simulator: Simulator, factors: Sequence[Factor], *, bare: bool = False
+) -> tuple[str, ...]:
+    """Says so, and what to do, where no column drives the scene and the model stands still while the records move.
+
+    bare : whether a scene alone was given: then also where the model, by laws of its own, is far from the records
+    """
     if bench.inputs or any(trial.motions for trial in simulator.trials):
         return ()
     hypothesis = Hypothesis(factors=tuple(factors))
     simulated = simulator.columns(hypothesis, np.zeros(hypothesis.size))
     still = all(own and not _shows(own, trial) for trial, own in zip(simulator.trials, simulated, strict=True))
-    [residuals] = simulator.residuals(hypothesis, [np.zeros(hypothesis.size)])
-    if not still and residuals is not None and chi_square(residuals, simulator.used) < FAR:
-        return ()
+    if not still:
+        [residuals] = simulator.residuals(hypothesis, [np.zeros(hypothesis.size)])
+        if not bare or residuals is None or chi_square(residuals, simulator.used) < FAR:
+            return ()
     how = "the model stands still while the records move" if still else "the model runs by laws of its own, far from what was measured"
     unused = sorted({name for record in records for name in record.channels if name not in bench.measured})
     which = repr(unused[0] if unused else "motor_torque")

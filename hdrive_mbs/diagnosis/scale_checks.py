@@ -79,15 +79,14 @@ def looks_scaled(simulator: Simulator, factors: Sequence[Factor]) -> tuple[str, 
         units = {channel.name: channel.unit for channel in network.channels}
         of = {column: units.get(item.channel, "") for column, item in trial.measured.items()}
         for column, why in (*_by_itself(trial, own, of), *_by_another(trial, own, of)):
-            found.setdefault(
-                column, f"Record {trial.name!r}: column {column!r} looks {why} Give its unit when reading: --unit {column}=..."
-            )
+            way_out = f"Give its unit when reading: --unit {column}=... (under its name in the file)."
+            found.setdefault(column, f"Record {trial.name!r}: column {column!r} looks {why} {way_out}")
         for column in () if network.is_lateral else _turned(trial, own, of):
             found.setdefault(
                 column,
                 f"Record {trial.name!r}: column {column!r} runs against what {trial.measured[column].channel} of the nominal model does."
-                f" Turn its sign round when reading, --unit {column}='-1 {of[column]}', or the sense of the model, like"
-                " HarmonicDrive.output_sense.",
+                f" Turn its sign round when reading, like --unit {column}='-1 {of[column]}' (its name and its unit in the file), or the"
+                " sense of the model, like HarmonicDrive.output_sense.",
             )
     return tuple(found.values())
 

@@ -16,7 +16,7 @@ def derivative(expression: Expression, name: str) -> Expression:
 
     At kinks (abs, sign, min, max, where) the derivative is the one-sided derivative of the branch
     that the condition selects; jumps contribute nothing.  At the tip of a root, where its argument is 0 and
-    level as of a radius sqrt(x^2 + y^2) at the centre, it is 0, the mean of all directions.
+    level and smooth as of a radius sqrt(x^2 + y^2) at the centre, it is 0, the mean of all directions.
     """
     known: dict[int, Expression] = {}
     for node in in_order(expression):
@@ -51,16 +51,26 @@ _FLAT = {"constant", "sign", "floor", "ceil", "lt", "le", "eq", "and", "or", "no
 
 def _d_pow(node: Expression, a: Expression, b: Expression, da: Expression, db: Expression) -> Expression:
     result = b * power(a, b - 1.0) * da
-    if is_constant(b) and 0.0 < float(b.data) < 1.0:
-        result = _level(result, da)
+    if is_constant(b) and 0.5 <= float(b.data) < 1.0:
+        result = _level(result, a, da)
     if not is_constant(db, 0.0):
         result = result + node * make("log", a) * db
     return result
 
 
-def _level(slope: Expression, inner: Expression) -> Expression:
-    """The slope, but 0 where the argument is level: at the tip of a root the slope itself is 0/0."""
-    return slope if is_constant(inner) else choose(inner == 0.0, constant(0.0), slope)
+def _level(slope: Expression, a: Expression, da: Expression) -> Expression:
+    """The slope of a root of a, but 0 where a smooth a is level: there the slope itself is 0/0, and a grows as a square at least."""
+    return choose(da == 0.0, constant(0.0), slope) if not is_constant(da) and all(map(_is_smooth, in_order(a))) else slope
+
+
+def _is_smooth(node: Expression) -> bool:
+    if node.operation == "pow":
+        exponent = node.arguments[1]
+        return is_constant(exponent) and float(exponent.data) >= 0.0 and float(exponent.data).is_integer()
+    return node.operation in _SMOOTH
+
+
+_SMOOTH = {"variable", "constant", "add", "sub", "mul", "div", "neg", "sin", "cos", "tan", "atan", "sinh", "cosh", "tanh", "asinh", "exp"}
 
 
 _RULES: dict[str, Rule] = {
@@ -85,7 +95,7 @@ _RULES: dict[str, Rule] = {
     "atanh": lambda n, a, da: da / (1.0 - a * a),
     "exp": lambda n, a, da: n * da,
     "log": lambda n, a, da: da / a,
-    "sqrt": lambda n, a, da: _level(da / (2.0 * n), da),
+    "sqrt": lambda n, a, da: _level(da / (2.0 * n), a, da),
     "abs": lambda n, a, da: make("sign", a) * da,
 }
 

@@ -213,6 +213,9 @@ def test_a_column_that_is_mapped_leaves_the_columns_of_the_bench_in_place(asked:
     words = ("--channel", "n_load=load_encoder", "--out", str(tmp_path / "out"))
     assert invoke(written(tmp_path, BENCH), "--records", str(file), *words).exit_code == 0
     assert sorted(asked[0]["records"]["a"].channels) == ["motor_angle", "n_load"]  # and not the spare one, which has no unit
+    words = ("--channel", "n_load=motor_encoder", "--out", str(tmp_path / "out_2"))
+    assert invoke(written(tmp_path, BENCH), "--records", str(file), *words).exit_code == 0
+    assert sorted(asked[1]["records"]["a"].channels) == ["n_load"]  # what is mapped stands for the bench's own column
 
 
 def test_effects_of_an_own_file_are_tried_beside_the_library(asked: list[dict[str, Any]], tmp_path: Path) -> None:

@@ -34,6 +34,7 @@ from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.plots.report_html import report_html
 from hdrive_mbs.quantities import parameter
+from hdrive_mbs.records.measurement import Measurement
 from hdrive_mbs.records.record import Record
 from hdrive_mbs.records.repair import repaired
 from tests.unit.diagnosis_cases import DURATION, KNOWLEDGE, STEP, bench, quiet, records
@@ -129,7 +130,38 @@ def test_a_driving_column_in_another_unit_is_seen_by_what_the_model_then_does() 
         assert len(said) == wrong
         if wrong:
             assert said[0].startswith("Column 'speed_reference', which drives the scene, looks as if its numbers were in rpm")
-            assert said[0].endswith("--unit speed_reference=...")
+            assert "--unit speed_reference=..." in said[0]
+
+
+def test_a_model_that_runs_away_for_want_of_friction_is_no_matter_of_units() -> None:
+    """It would be nearer if it hardly moved, as with a torque a thousand times smaller; but nothing is as near as that at rest."""
+    times = np.arange(2000) * 1e-3
+    torque = 0.5 * np.sign(np.sin(4.0 * times))
+    standing = hm.TorqueHistory(times=(0.0, 1.0), torques=(0.0, 0.0))
+    scene = hm.Scene(name="free", parts={"rotor": hm.Motor(inertia=1e-3, characteristic=standing)}, connections=[])
+    alone = Bench(
+        scene=scene,
+        knowledge={"inertia": Uncertain(paths=("rotor.inertia",), sigma=0.05)},
+        measured={"w": Measured(channel="rotor.speed", noise=0.05)},
+        inputs={"torque": Input(path="rotor.characteristic", law=lambda t, v: hm.TorqueHistory(times=t, torques=v))},
+    )
+    real = hm.simulate(
+        scene.replacing({"rotor.characteristic": hm.TorqueHistory(times=tuple(times), torques=tuple(torque))}).with_effect(
+            hm.CoulombStribeckFriction(coulomb=0.45, smoothing_speed=0.5), at="rotor"
+        ),
+        float(times[-1]),
+    )
+    noise = 0.05 * np.random.default_rng(3).standard_normal(len(times))
+    channels = [
+        Measurement(name="torque", unit="N m", values=torque),
+        Measurement(name="w", unit="rad/s", values=real.at("rotor.speed", times) + noise),
+    ]
+    given = Record(name="run", times=times, channels={item.name: item for item in channels})
+    coarse = Simulator(alone.trials(given), 1e-3, 4)
+    assert drives_scaled(alone, [given], coarse, factors_of(alone)) == ()
+    free = 800.0 * np.cumsum(torque) * 1e-3  # of a rotor without friction, its inertia wrong by a quarter
+    kilo = given.with_channels([channels[0].replacing(values=1e3 * torque), channels[1].replacing(values=free)])
+    assert drives_scaled(alone, [kilo], Simulator(alone.trials(kilo), 1e-3, 4), factors_of(alone)) != ()
 
 
 def test_what_is_no_record_is_refused_and_one_class_is_a_list_of_one() -> None:
@@ -168,8 +200,11 @@ def test_columns_of_other_names_serve_the_bench_where_they_are_mapped() -> None:
 def test_two_columns_for_one_of_the_bench_are_refused() -> None:
     first = called_otherwise(quiet()[0], {"motor_angle": ("phi", "motor_encoder")})
     twice = first.with_channels([*first, first["phi"].replacing(name="phi_2", quantity="motor_angle")])
-    with pytest.raises(hm.RecordError, match=r"'phi' and 'phi_2' are both mapped to what the bench calls 'motor_angle'; map one of them"):
+    with pytest.raises(hm.RecordError, match=r"'phi' and 'phi_2' would both be what the bench calls 'motor_angle'; map one of them"):
         as_the_bench_names_them(bench(), twice)
+    both = quiet()[0].with_channels([*quiet()[0], first["phi"].replacing(quantity="motor_angle")])
+    with pytest.raises(hm.RecordError, match=r"'phi' and 'motor_angle' would both be"):
+        as_the_bench_names_them(bench(), both)
 
 
 def test_a_column_that_drives_and_is_missing_says_how_another_one_is_mapped() -> None:
@@ -199,13 +234,14 @@ def test_a_scene_that_no_column_drives_is_warned_of() -> None:
 def test_a_scene_that_runs_by_a_law_of_its_own_far_from_the_record_is_warned_of() -> None:
     """Its servo follows a reference that the record knows nothing of; where the model is near the record, nothing is said."""
     alone = dataclasses.replace(bench(), inputs={}, scene=bench().scene.replacing({"motor.characteristic.reference": CONSTANT}))
-    [said] = not_driven(alone, quiet(), Simulator(alone.trials(quiet()[0]), 1e-3), factors_of(alone))
+    [said] = not_driven(alone, quiet(), Simulator(alone.trials(quiet()[0]), 1e-3), factors_of(alone), bare=True)
+    assert not_driven(alone, quiet(), Simulator(alone.trials(quiet()[0]), 1e-3), factors_of(alone)) == ()  # a bench that says so
     assert said.startswith("No column drives the scene, and the model runs by laws of its own, far from what was measured")
     assert "Columns that are not used: load_torque, speed_reference." in said
     [near] = Simulator(alone.trials(quiet()[0]), 1e-3).columns_at(Hypothesis(factors_of(alone)), [np.zeros(len(factors_of(alone)))])[0]
     [trial] = alone.trials(quiet()[0])
     itself = Simulator([dataclasses.replace(trial, columns=near)], 1e-3)
-    assert not_driven(alone, quiet(), itself, factors_of(alone)) == ()
+    assert not_driven(alone, quiet(), itself, factors_of(alone), bare=True) == ()
 
 
 def test_effects_with_states_of_their_own_can_be_run_on_a_record_of_a_kilohertz() -> None:

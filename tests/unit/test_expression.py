@@ -204,9 +204,19 @@ def test_a_radius_is_level_at_the_centre_and_has_its_slope_elsewhere(radius: Cal
     assert scalar_function([stop], ("x", "y"))(0.0, 0.0) == (0.0,)
 
 
-def test_a_root_that_begins_steeply_has_no_finite_slope_there() -> None:
-    with np.errstate(divide="ignore"):
-        assert math.isinf(evaluate(derivative(record(np.sqrt(x)), "x"), {"x": np.float64(0.0)}))
+STEEP: dict[str, Callable[[Any], Any]] = {
+    "x": np.sqrt,
+    "|x|": lambda a: np.sqrt(abs(a)),
+    "fourth root": lambda a: (a * a) ** 0.25,
+    "odd": lambda a: np.sign(a) * np.sqrt(abs(a)),
+    "of a radius": lambda a: np.sqrt(np.hypot(a, a)),
+}
+
+
+@pytest.mark.parametrize("root", STEEP.values(), ids=STEEP)
+def test_a_root_that_begins_steeply_has_no_finite_slope_there(root: Callable[[Any], Any]) -> None:
+    [slope] = scalar_function([derivative(record(root(x)), "x")], ("x",))(0.0)
+    assert not math.isfinite(slope)
 
 
 # -- numpy functions ------------------------------------------------------------------------------

@@ -70,6 +70,11 @@ def test_a_law_that_gives_no_number_ends_the_run() -> None:
 def test_a_law_that_gives_no_number_at_the_start_is_named() -> None:
     with pytest.raises(LawError, match=r"motor\.torque gives nan on motor at t = 0 \(angle = 0 rad, speed = 0 rad/s\).*np\.sign"):
         hm.simulate(rotor(lambda w: -2.0 * w / abs(w)), 1.0)
+    with (
+        pytest.warns(hm.LoweringWarning),
+        pytest.raises(LawError, match=r"motor\.torque: the law fails at the start \(ZeroDivisionError: .*\)"),
+    ):
+        hm.simulate(rotor(lambda w: 1.0 / float(w)), 1.0)
     assert hm.simulate(rotor(lambda w: -2.0 * w / abs(w)), 0.1, initial_speed=1.0)["motor.speed"].values[-1] == pytest.approx(0.8)
 
 

@@ -301,6 +301,14 @@ class TurnedSpring(RadialStop):
         return {"x": self.soft * motion.x * (1.0 + 0.1 * np.arctan2(motion.y, motion.x)), "y": self.soft * motion.y}
 
 
+@dataclass(frozen=True, kw_only=True)
+class SteepSpring(RadialStop):
+    """One that cannot be recorded, and is no number on one side of the centre."""
+
+    def forces(self, motion: hm.RelativeMotion) -> dict[str, Any]:
+        return {"x": self.soft * float(motion.x) + (float(motion.x) ** 0.5 if motion.x >= 0.0 else math.nan), "y": self.soft * motion.y}
+
+
 def test_a_stop_around_a_soft_ring_leaves_the_frequencies_of_the_ring() -> None:
     def frequencies(law: hm.BearingLaw) -> Any:
         bearing = hm.Bearing(law=law)
@@ -314,6 +322,9 @@ def test_a_law_without_a_derivative_is_named_with_its_place() -> None:
     line = two_discs(kx=1e6).replacing({"station_3": hm.Bearing(law=TurnedSpring(soft=4e6, gap=5e-5))})
     with pytest.raises(LawError, match=r"station_3.*no finite derivative with respect to station_3.*[xy] where that is 0, .*np\.where"):
         hm.campbell(line, [0.0, 100.0])
+    by_numbers = two_discs(kx=1e6).replacing({"station_3": hm.Bearing(law=SteepSpring(soft=4e6, gap=5e-5))})
+    with pytest.raises(LawError, match=r"station_3.*no finite derivative"):
+        hm.campbell(by_numbers, [0.0, 100.0])
 
 
 def test_internal_damping_makes_forward_whirl_grow_above_the_speed_of_the_closed_form() -> None:

@@ -177,17 +177,16 @@ class LineMatrices:
             for slope, value in zip(self._slopes, function(*(known[name] for name in arguments)), strict=True):
                 matrix = stiffness if slope.kind == "angle" else damping
                 if not np.isfinite(value):
-                    raise LawError(self._endless(slope, moment))
+                    raise LawError(self._endless(slope.element, self.names[slope.row], slope.kind, self.names[slope.column], moment))
                 matrix[slope.row, slope.column] -= value
         for element in self._plain:
             self._difference(element, moment, damping, stiffness)
         return LineSystem(self.names, self.mass, damping, stiffness)
 
-    def _endless(self, slope: _Slope, moment: Moment) -> str:
-        owner = self.names[slope.column]
-        values, what = (moment.angles, "") if slope.kind == "angle" else (moment.speeds, "the speed of ")
+    def _endless(self, element: str, on: str, kind: str, owner: str, moment: Moment) -> str:
+        values, what = (moment.angles, "") if kind == "angle" else (moment.speeds, "the speed of ")
         return (
-            f"{slope.element}: its force on {self.names[slope.row]} has no finite derivative with respect to {what}{owner} where that"
+            f"{element}: its force on {on} has no finite derivative with respect to {what}{owner} where that"
             f" is {float(values[owner]):.6g}, so the line cannot be linearised there. Make its law smooth at that point, like"
             " np.sqrt(x**2 + small**2) in place of np.sqrt(x**2), or give it a value of its own there with np.where."
         )
@@ -207,7 +206,10 @@ class LineMatrices:
                     sides.append(element.contribution(there))
                 for target, up in sides[0].items():
                     if target in self._index and not (kind == "angles" and self._is_periodic(element, target, name)):
-                        matrix[self._index[target], column] -= (float(up) - float(sides[1][target])) / (2.0 * h)
+                        change = (float(up) - float(sides[1][target])) / (2.0 * h)
+                        if not np.isfinite(change):
+                            raise LawError(self._endless(element.name, target, kind.removesuffix("s"), name, moment))
+                        matrix[self._index[target], column] -= change
 
     def depends_on(self) -> frozenset[str] | None:
         """Variables of the state that slopes depend on (``speed:rotor``, ``angle:rotor.x``), the spins of gyroscopes and
