@@ -78,12 +78,23 @@ def _of_nominal(null: Fitted) -> Task:
 
 
 def _of_found(found: Sequence[Fitted], near: bool) -> list[Task]:
-    """near : whether the nominal model leaves so little that everything is worth a long fit"""
+    """Of what a search found, how far each is fitted.
+
+    The same effect at another place is fitted to its end where it had not come there: a neighbour of the right place is as good
+    as fits as it does, halfway.
+
+    near : whether the nominal model leaves so little that everything is worth a long fit
+    """
     leader = min(found, key=lambda item: item.cost, default=None)
     tasks = []
     for item in found:
         rivals = leader is not None and item.cost < leader.cost + RIVAL
-        steps = LONG if rivals or near else 1 if leader is not None and beyond(item, leader) else LAST
+        elsewhere = leader is not None and not item.converged and item.chi_fit < NEAR and _families(item) == _families(leader)
+        steps = LONG if rivals or elsewhere or near else 1 if leader is not None and beyond(item, leader) else LAST
         sharp = EXACT if item.chi_fit < NEAR else FINE
-        tasks.append(Task(item.hypothesis, item.z, None, steps, sharp, hops=HOPS if rivals else 0))
+        tasks.append(Task(item.hypothesis, item.z, None, steps, sharp, hops=HOPS if rivals or elsewhere else 0))
     return tasks
+
+
+def _families(fitted: Fitted) -> list[str]:
+    return sorted(item.effect.family for item in fitted.hypothesis.added)

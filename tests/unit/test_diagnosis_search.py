@@ -469,7 +469,7 @@ def test_what_little_tells_apart_is_fitted_alike_on_all_samples(
         return dataclasses.replace(near, hypothesis=task.hypothesis)
 
     monkeypatch.setattr(all_samples, "run_task", run)
-    found = [near, dataclasses.replace(near, cost=110.0), dataclasses.replace(near, cost=140.0)]
+    found = [near, dataclasses.replace(near, cost=110.0), dataclasses.replace(near, cost=140.0, converged=True)]
     far = dataclasses.replace(near, cost=1e5, chi_fit=90.0)
     with Team(1) as team:
         last = on_all_samples(team, simulator, far, found, NOT_LOOKED, lambda done, total: None)
@@ -479,6 +479,35 @@ def test_what_little_tells_apart_is_fitted_alike_on_all_samples(
     assert other.steps < rival.steps
     assert other.hops == 0
     assert last.place is NOT_LOOKED
+
+
+def test_the_same_effect_at_another_place_is_fitted_to_its_end(simulator: Simulator, near: Fitted, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Friction of a brake on a shaft was put to the wave generator beside it: at the brake its fit had stopped halfway, 200 behind."""
+    asked: list[Task] = []
+
+    def run(fine: Simulator, task: Task) -> Fitted:
+        asked.append(task)
+        return dataclasses.replace(near, hypothesis=task.hypothesis)
+
+    monkeypatch.setattr(all_samples, "run_task", run)
+
+    def at(effect: hm.Effect, place: str, cost: float, *, chi_fit: float = 1.2, converged: bool = False) -> Fitted:
+        hypothesis = Hypothesis(factors_of(BENCH), (Added(effect, place, "cause"),))
+        return dataclasses.replace(near, hypothesis=hypothesis, cost=cost, chi_fit=chi_fit, converged=converged)
+
+    friction, drag = hm.CoulombStribeckFriction(coulomb=0.1), hm.ViscousDrag(coefficient=0.01)
+    found = [
+        at(friction, "load", 100.0, converged=True),
+        at(friction, "motor", 300.0),
+        at(friction, "motor", 300.0, converged=True),
+        at(drag, "motor", 300.0),
+        at(friction, "motor", 900.0, chi_fit=5.0),
+    ]
+    with Team(1) as team:
+        on_all_samples(team, simulator, dataclasses.replace(near, cost=1e5, chi_fit=90.0), found, NOT_LOOKED, lambda done, total: None)
+    best, elsewhere, *others = ((task.steps, task.hops) for task in asked[2:])
+    assert elsewhere == best
+    assert all(steps < best[0] and hops == 0 for steps, hops in others)
 
 
 def test_a_gap_whose_place_cannot_be_looked_for_says_why(simulator: Simulator, near: Fitted, monkeypatch: pytest.MonkeyPatch) -> None:
