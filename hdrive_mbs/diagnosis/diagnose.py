@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import platform
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -168,6 +169,7 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
     improved = best.hypothesis.scene(bench.scene, best.z)
     notes: list[str] = []
     claimed = () if claim.kind in ("none", "unknown") or claim.fit is None else _causes(claim.fit, claim, improved, bench.groups)
+    claimed = strongest_first(claimed, evidence.singles)
     if evidence.place.doubt:
         notes.append(f"Place of the gap: {evidence.place.doubt}")
     extras = pictures_of(evidence, best, [cause.at for cause in claimed]) if pictures else {}
@@ -242,6 +244,17 @@ def _causes(found: Found, claim: Claim, improved: Scene, groups: Mapping[str, Se
             )
         )
     return tuple(causes)
+
+
+def strongest_first(causes: Sequence[Cause], singles: Sequence[Found]) -> tuple[Cause, ...]:
+    """Causes that are claimed together, the one that explains most by itself first; those that were not fitted alone last.
+
+    singles : single causes on all samples
+    """
+    alone: dict[Label, float] = {}
+    for item in singles:
+        alone[item.suspect.label] = max(item.log_odds, alone.get(item.suspect.label, -math.inf))
+    return tuple(sorted(causes, key=lambda cause: -alone.get((cause.effect, cause.at), -math.inf)))
 
 
 def _ranking(evidence: Evidence, claim: Claim) -> tuple[Cause, ...]:

@@ -17,7 +17,7 @@ from hdrive_mbs.diagnosis.all_samples import Last, on_all_samples
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate, candidates
 from hdrive_mbs.diagnosis.choosing import beyond, enough, passed_over, spread_out
-from hdrive_mbs.diagnosis.diagnose import factors_of
+from hdrive_mbs.diagnosis.diagnose import factors_of, strongest_first
 from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian, secant
 from hdrive_mbs.diagnosis.from_the_best import bent, other_laws, unfinished
 from hdrive_mbs.diagnosis.gather import wants_second
@@ -26,7 +26,7 @@ from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
 from hdrive_mbs.diagnosis.located import Located, located
 from hdrive_mbs.diagnosis.pairs import alone, contenders, moved
-from hdrive_mbs.diagnosis.result import Place
+from hdrive_mbs.diagnosis.result import Cause, Place
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.search import ENOUGH, Search, fit_nominal, search
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -508,6 +508,30 @@ def test_the_same_effect_at_another_place_is_fitted_to_its_end(simulator: Simula
     best, elsewhere, *others = ((task.steps, task.hops) for task in asked[2:])
     assert elsewhere == best
     assert all(steps < best[0] and hops == 0 for steps, hops in others)
+
+
+def test_of_causes_claimed_together_the_one_that_explains_most_alone_comes_first(near: Fitted) -> None:
+    def single(label: tuple[str, str], odds: float) -> Found:
+        return Found(Suspect(label, "law", (near.hypothesis,), (near.hypothesis,)), near, odds)
+
+    singles = [single(("looseness", "bearing_1"), 5.0), single(("looseness", "bearing_1"), 80.0), single(("bow", "shaft"), 40.0)]
+    claimed = [
+        Cause(
+            effect=effect,
+            at=at,
+            kind="force",
+            law="law",
+            probability=0.9,
+            log_odds=90.0,
+            fit=1.0,
+            held_out=1.0,
+            signature="",
+            parameters=(),
+        )
+        for effect, at in (("friction", "rotor"), ("bow", "shaft"), ("looseness", "bearing_1"))
+    ]
+    ordered = [cause.effect for cause in strongest_first(claimed, singles)]
+    assert ordered == ["looseness", "bow", "friction"]
 
 
 def test_a_gap_whose_place_cannot_be_looked_for_says_why(simulator: Simulator, near: Fitted, monkeypatch: pytest.MonkeyPatch) -> None:
