@@ -45,7 +45,7 @@ def test_an_interrupted_run_keeps_its_answers_and_the_next_one_answers_the_rest(
     assert {path.stem for path in out.with_suffix(".raw").iterdir()} >= set(kept)
     if how == signal.SIGINT:
         assert process.returncode == 130, said
-        assert said.splitlines()[-1] == f"stopped; the same command goes on from {out}"
+        assert said.endswith(f"stopped; the same command goes on from {out}\n")  # perhaps behind half a line
     else:
         assert process.returncode == -signal.SIGKILL
 
