@@ -29,6 +29,8 @@ def drives_scaled(bench: Bench, records: Sequence[Record], simulator: Simulator,
 
     simulator : of these records, with the nominal scene
     """
+    if not bench.inputs:
+        return ()
     before = _misfit(simulator, factors)
     if not FAR < before < np.inf:
         return ()

@@ -50,18 +50,15 @@ NEAR = 0.1
 
 def check_scale(trial: Trial, column: str, simulated: FloatArray, unit: str) -> None:
     """Raise RecordError where a column goes with its simulation [unit] but by the factor of another unit."""
-    values = trial.columns[column]
-    there = np.isfinite(values) & np.isfinite(simulated)
-    if there.sum() < 2 or unit not in OTHERS:
+    pair = _together(trial.columns[column], simulated, CLEAR) if unit in OTHERS else None
+    if pair is None:
         return
-    y, s = (item[there] - np.mean(item[there]) for item in (values, simulated))
-    power, own, both = float(s @ s), float(y @ y), float(y @ s)
-    if power == 0.0 or own == 0.0 or both * both < CLEAR * power * own:
-        return
-    causes = list(_causes(both / power, unit))
+    y, s = pair
+    ratio = float(y @ s) / float(s @ s)
+    causes = list(_causes(ratio, unit))
     if causes:
         raise RecordError(
-            f"Record {trial.name!r}: {column!r} is {both / power:.4g} times what {trial.measured[column].channel} of the nominal scene"
+            f"Record {trial.name!r}: {column!r} is {ratio:.4g} times what {trial.measured[column].channel} of the nominal scene"
             f" does, as if {' or '.join(causes)}. Give the unit of the numbers when reading, units={{{column!r}: ...}},"
             " or the column the channel that it measures."
         )
@@ -100,12 +97,8 @@ def _turned(trial: Trial, simulated: Mapping[str, FloatArray], units: Mapping[st
 
 def _sense(values: FloatArray, reference: FloatArray) -> float:
     """1 or -1 where two courses go together or against each other, 0 where neither is clear."""
-    there = np.isfinite(values) & np.isfinite(reference)
-    if there.sum() < 2:
-        return 0.0
-    y, s = (item[there] - np.mean(item[there]) for item in (values, reference))
-    power, own, both = float(s @ s), float(y @ y), float(y @ s)
-    return math.copysign(1.0, both) if power > 0.0 and own > 0.0 and both * both > OPPOSED * power * own else 0.0
+    pair = _together(values, reference, OPPOSED)
+    return 0.0 if pair is None else math.copysign(1.0, float(pair[0] @ pair[1]))
 
 
 def _by_itself(trial: Trial, simulated: Mapping[str, FloatArray], units: Mapping[str, str]) -> Iterator[tuple[str, str]]:
@@ -147,18 +140,25 @@ def _ratio(values: FloatArray, reference: FloatArray, together: float) -> float 
 
     together : least squared correlation
     """
-    there = np.isfinite(values) & np.isfinite(reference)
-    if there.sum() < 2:
+    pair = _together(values, reference, together)
+    if pair is None:
         return None
-    y, s = (item[there] - np.mean(item[there]) for item in (values, reference))
-    power, own, both = float(s @ s), float(y @ y), float(y @ s)
-    if power == 0.0 or own == 0.0 or both * both < together * power * own:
-        return None
+    y, s = pair
     moves = s != 0.0
     ratios, weights = y[moves] / s[moves], np.abs(s[moves])
     order = np.argsort(ratios)
     passed = np.cumsum(weights[order])
     return float(ratios[order][np.searchsorted(passed, 0.5 * passed[-1])])
+
+
+def _together(values: FloatArray, reference: FloatArray, least: float) -> tuple[FloatArray, FloatArray] | None:
+    """What both leave of their means where both are known; None where their squared correlation is less than ``least``."""
+    there = np.isfinite(values) & np.isfinite(reference)
+    if there.sum() < 2:
+        return None
+    y, s = (item[there] - np.mean(item[there]) for item in (values, reference))
+    power, own, both = float(s @ s), float(y @ y), float(y @ s)
+    return None if power == 0.0 or own == 0.0 or both * both < least * power * own else (y, s)
 
 
 def _causes(ratio: float, unit: str) -> Iterator[str]:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from collections.abc import Callable, Iterator
 from typing import Any
 
+import numpy as np
 import pytest
 
 import hdrive_mbs as hm
@@ -12,9 +15,11 @@ from hdrive_mbs import topology
 from hdrive_mbs.compiled import constant_mass, groups, linear_forces, structure
 from hdrive_mbs.compiled.idle_coordinates import without_idle
 from hdrive_mbs.compiled.line import CompiledLine
+from hdrive_mbs.compiled.time_inputs import TimeInput, time_input
 from hdrive_mbs.components import shaft_section
 from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.diagnosis.candidates import candidates
+from hdrive_mbs.expression import record, variable
 from hdrive_mbs.network import claims
 from models import drive_bench, rotor_bench
 
@@ -73,3 +78,17 @@ def test_what_is_kept_cannot_be_changed() -> None:
     for matrix in shaft_section._matrices(section.beam(), section.rotary_inertia):
         with pytest.raises(ValueError, match="read-only"):
             matrix[0, 0] = 1.0
+
+
+def test_equal_tables_of_time_are_held_once_and_let_go_with_the_last_line_that_has_them() -> None:
+    def made(factor: float) -> TimeInput:
+        t = variable("t")
+        return time_input(record(factor * np.interp(t, [0.0, 1.0, 2.0], [0.0, 3.0, 1.0])))
+
+    first, second, other = made(2.0), made(2.0), made(3.0)
+    assert first is second
+    assert other is not first
+    kept = weakref.ref(first)
+    del first, second
+    gc.collect()
+    assert kept() is None

@@ -25,6 +25,7 @@ from hdrive_mbs.diagnosis.ground import held, screen_from
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
 from hdrive_mbs.diagnosis.located import Located, located
+from hdrive_mbs.diagnosis.normal_equations import STRETCH, normal_equations
 from hdrive_mbs.diagnosis.pairs import alone, contenders, moved
 from hdrive_mbs.diagnosis.result import Cause, Place
 from hdrive_mbs.diagnosis.screening import Look, Screen
@@ -46,6 +47,27 @@ NOT_LOOKED = Located(places=(), doubt="", forces=(), turned=())
 def simulator() -> Simulator:
     """One record of the small drive bench, its parameters off by their tolerance."""
     return Simulator(BENCH.trials(quiet()[0]), 2.5e-4, 4)
+
+
+def test_normal_equations_in_stretches_are_those_of_the_whole() -> None:
+    """Of more samples than a stretch has and not a multiple of it; sums of 50,000 terms agree to their rounding."""
+    rng = np.random.default_rng(4)
+    columns, weights, residuals = rng.standard_normal((50_000, 3)), rng.uniform(0.1, 1.0, 50_000), rng.standard_normal(50_000)
+    squares, slope = normal_equations(columns, weights, residuals)
+    assert len(columns) % STRETCH != 0
+    np.testing.assert_allclose(squares, np.einsum("ni,n,nj->ij", columns, weights, columns), rtol=1e-10, atol=1e-9)
+    np.testing.assert_allclose(slope, np.einsum("ni,n,n->i", columns, weights, residuals), rtol=1e-10, atol=1e-9)
+
+
+def test_a_jacobian_along_axes_is_the_same_in_stretches_of_any_length(simulator: Simulator, monkeypatch: pytest.MonkeyPatch) -> None:
+    hypothesis = Hypothesis(factors_of(BENCH))
+    fitted = fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=2)
+    metric = fitted.curvature + np.diag(hypothesis.curvatures(fitted.z))
+    whole = jacobian(simulator, hypothesis, fitted.z, fitted.residuals, metric)
+    monkeypatch.setattr("hdrive_mbs.diagnosis.fit.STRETCH", 37)
+    monkeypatch.setattr("hdrive_mbs.diagnosis.fit.AT_ONCE", 2)
+    parts = jacobian(simulator, hypothesis, fitted.z, fitted.residuals, metric)
+    np.testing.assert_allclose(parts, whole, rtol=1e-9, atol=1e-9 * np.abs(whole).max())
 
 
 def test_secant_gives_the_change_that_was_seen_and_leaves_what_lies_across_the_move() -> None:
