@@ -14,7 +14,6 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from scipy.signal import lfilter
 
 from hdrive_mbs.diagnosis.measured import Measured
 
@@ -48,6 +47,8 @@ class Whitener:
         """Innovations of the kept samples over their standard deviation."""
         if self._measured.coloured[0] == 0.0:
             return np.asarray(values[:: self._every] * self._scale)
+        from scipy.signal import lfilter  # takes as long to import as numpy and most of scipy
+
         white = np.asarray(lfilter([self._scale, -self._scale * self._kept], [1.0, -self._left], values)[:: self._every])
         return white if self._start is None else self._start.shrunk(white)
 

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
-from scipy.signal import find_peaks
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -84,6 +83,8 @@ def speed_peaks(
     angular acceleration of the run.  Two critical speeds that are passed within such a span cannot be told apart, and
     the beats after a critical speed, of free whirl against the forced one, are shorter (the first takes 0.8 sqrt(2 pi/a)).
     """
+    from scipy.signal import find_peaks  # takes as long to import as numpy and most of scipy
+
     half_turns = np.floor(np.abs(angle - angle[0]) / math.pi).astype(int)
     starts = np.concatenate([[0], np.nonzero(np.diff(half_turns))[0] + 1])
     if len(starts) < 5:
