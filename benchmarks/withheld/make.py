@@ -23,7 +23,7 @@ import numpy as np
 from benchmarks.withheld import sealing
 from benchmarks.withheld.bench import BENCHES, load
 from benchmarks.withheld.folder import write_case
-from benchmarks.withheld.mixture import Site, mixture
+from benchmarks.withheld.mixture import Site, mixture, singles
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -35,6 +35,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, required=True, help="new folder for the cases")
     parser.add_argument("--key", type=Path, help="archive for the truths; default: OUT.key.zip beside OUT")
     parser.add_argument("--open", action="store_true", help="truth.json in each case folder, nothing sealed")
+    parser.add_argument("--causes", help="names of causes, separated by commas: one of these in every case; for open sets")
     parser.add_argument("--noise", choices=("stated", "coloured"), default="stated", help="coloured: part of the white noise has a memory")
     parser.add_argument("--jobs", type=int, default=1, help="processes (default 1)")
     options = parser.parse_args(arguments)
@@ -46,8 +47,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not options.open and key.exists():
         parser.error(f"{key} exists already; name a new --key, a key is never overwritten")
 
+    if options.causes and not options.open:
+        parser.error("--causes says what a set holds; it goes with --open")
+    names = tuple(options.causes.split(",")) if options.causes else ()
+    known = [cause.name for cause in load(options.bench).CAUSES]
+    if unknown := [name for name in names if name not in known]:
+        parser.error(f"--causes {','.join(unknown)}: the {options.bench} bench has {', '.join(known)}")
+
     seed = options.seed if options.seed is not None else secrets.randbits(63)
-    labels = make_set(options.bench, options.cases, seed, options.out, noise=options.noise, jobs=options.jobs)
+    labels = make_set(options.bench, options.cases, seed, options.out, noise=options.noise, jobs=options.jobs, names=names)
     if options.open:
         for case, truth in labels.items():
             (options.out / case / "truth.json").write_text(sealing.truth_text(truth), encoding="utf-8")
@@ -59,10 +67,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def make_set(bench: str, cases: int, seed: int, out: Path, *, noise: str = "stated", jobs: int = 1) -> dict[str, dict[str, Any]]:
-    """Write the records of every case; returns the labels.  Each case has random numbers of its own."""
+def make_set(
+    bench: str, cases: int, seed: int, out: Path, *, noise: str = "stated", jobs: int = 1, names: Sequence[str] = ()
+) -> dict[str, dict[str, Any]]:
+    """Write the records of every case; returns the labels.  Each case has random numbers of its own.
+
+    names : of the only causes; if not given the mixture of all
+    """
     order, *streams = np.random.SeedSequence(seed).spawn(cases + 1)
-    sites = mixture(load(bench), cases, np.random.default_rng(order))
+    rng = np.random.default_rng(order)
+    sites = singles(load(bench), names, cases, rng) if names else mixture(load(bench), cases, rng)
     width = max(2, len(str(cases)))
     work = [(bench, f"{bench}-c{k + 1:0{width}d}", sites[k], streams[k], noise, out) for k in range(cases)]
     out.mkdir(parents=True)

@@ -32,6 +32,11 @@ def mixture(bench: Bench, cases: int, rng: np.random.Generator) -> list[list[Sit
     return [found[k] for k in rng.permutation(len(found))]
 
 
+def singles(bench: Bench, names: Sequence[str], cases: int, rng: np.random.Generator) -> list[list[Site]]:
+    """The sites of each case: one of the named causes."""
+    return [[site] for site in _rounds([cause for cause in bench.CAUSES if cause.name in names], cases, rng)]
+
+
 def _rounds(causes: Sequence[Cause], count: int, rng: np.random.Generator) -> list[Site]:
     """Every cause once, in random order, before any comes again; the place is drawn."""
     found: list[Site] = []

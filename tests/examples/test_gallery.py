@@ -8,6 +8,7 @@ import re
 from pathlib import Path
 from types import ModuleType
 
+import matplotlib
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -39,6 +40,11 @@ are unexplained: none after a shift by a pixel either way, at most 30 without an
 typeface (serif); 109 and more without one of the curves, 1300 to 2000 where one is 10 % higher, 80 to 1300 with an axis 2 % longer."""
 
 
+SET_ALIKE = (3, 11, 2)
+"""Matplotlib from which on words stand where they stand in the committed pictures: with 3.9.0 ten of the pictures are beyond FORGIVEN,
+with 3.11.0 three."""
+
+
 def unexplained(one: Image.Image, other: Image.Image) -> int:
     """Points of either picture whose colour the other has nowhere within REACH, to SHADE."""
     pictures = [picture.convert("RGB") for picture in (one, other)]
@@ -67,6 +73,8 @@ def test_a_script_makes_the_committed_picture_with_named_axes(name: str) -> None
         shares = ax.get_shared_x_axes().get_siblings(ax)
         assert any(one.get_xlabel() for one in shares) or not ax.xaxis.get_visible() or not ax.get_xticklabels(), ax
         assert ax.get_ylabel() or ax.get_yticklabels()
+    if matplotlib.__version_info__[:3] < SET_ALIKE:
+        pytest.skip("the committed pictures are compared from matplotlib {}.{}.{} on: earlier ones set words otherwise".format(*SET_ALIKE))
     with Image.open(GALLERY / "pictures" / f"{name}.png") as committed:
         off = unexplained(make().picture(axes), committed)
     assert off < FORGIVEN, f"{off} points differ: look at what 'python docs/gallery/make.py {name}' makes, and commit it"

@@ -514,6 +514,24 @@ def test_a_set_is_never_overwritten(quick: QuickBench, tmp_path: Path) -> None:
         make.main(arguments)
 
 
+def test_a_set_of_named_causes_holds_nothing_else_and_is_never_sealed(
+    quick: QuickBench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    names = [cause.name for cause in quick.CAUSES if cause.kind == "effect"][:2]
+    arguments = ["--bench", "drive", "--cases", "6", "--seed", "1", "--causes", ",".join(names)]
+    assert make.main([*arguments, "--open", "--out", str(tmp_path / "set")]) == 0
+    found = [json.loads(path.read_text(encoding="utf-8"))["truth"] for path in sorted(tmp_path.glob("set/*/truth.json"))]
+    assert len(found) == 6
+    assert all(len(truth) == 1 for truth in found)
+    assert {truth[0]["effect"] for truth in found} == set(names)
+    unknown = [*arguments[:-1], "nonsense", "--open"]
+    for wrong, words in ((arguments, "it goes with --open"), (unknown, "--causes nonsense: the drive bench has")):
+        with pytest.raises(SystemExit):
+            make.main([*wrong, "--out", str(tmp_path / "other")])
+        assert words in capsys.readouterr().err
+    assert not (tmp_path / "other").exists()
+
+
 @needs_round_1
 def test_the_scorer_of_round_1_reads_the_labels(quick: QuickBench, tmp_path: Path) -> None:
     folder = tmp_path / "set"
