@@ -1,6 +1,9 @@
 """One thread of linear algebra in each test process: ``pytest -n auto`` gives every core a process already.
 
 With a thread per core in each of them small complex products wait for each other, on a busy machine for minutes.
+
+The processes that tests start keep the bytecode of the package, also where the environment says that none is to be kept: each of
+some hundreds would compile it anew, which takes half as long as all its imports.
 """
 
 from __future__ import annotations
@@ -11,3 +14,5 @@ from hdrive_mbs.worker_process import ONE_THREAD
 
 for name in ONE_THREAD:
     os.environ.setdefault(name, "1")  # read when numpy is loaded, by the first test module
+
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
