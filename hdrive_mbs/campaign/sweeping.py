@@ -83,7 +83,7 @@ def sweep(
                 if arrived is not None and kept.values is not None:
                     arrived(point, kept.values)
     reused = set(outcomes)
-    stopped = ""
+    stopped, written = "", set(reused)
     if jobs:
         number = workers or _cores()
         arriving = _start(executor, function, jobs, workers=min(number, len(jobs)), retries=retries)
@@ -92,12 +92,15 @@ def sweep(
                 for done, (key, outcome) in enumerate(arriving, start=1):
                     outcomes[key] = outcome
                     files.write(key, asked, jobs[key], outcome)
+                    written.add(key)
                     if arrived is not None and outcome.values is not None:
                         arrived(jobs[key], outcome.values)
                     if report is not None:
                         report(done)
             except KeyboardInterrupt:
                 stopped = "stopped"
+                for key in outcomes.keys() - written:  # it came while the file of a finished job was being written
+                    files.write(key, asked, jobs[key], outcomes[key])
             except SimulationError as error:
                 if not outcomes:
                     raise

@@ -18,6 +18,7 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.campaign.fingerprint import fingerprint, job_key
+from hdrive_mbs.campaign.job_files import JobFiles
 from hdrive_mbs.errors import ParameterError, PlaceError, SimulationError
 from hdrive_mbs.worker_process import ONE_THREAD
 from models.harmonic_drive_train import build
@@ -269,6 +270,23 @@ def test_an_interrupted_campaign_goes_on_without_running_finished_jobs_again(tmp
     assert campaign.reused == finished
     assert list(campaign["double"]) == [2.0 * x for x in range(30)]
     assert sorted(int(x) for x, _ in log_lines(log)[len(before) :]) == sorted(set(range(30)) - kept)
+
+
+def test_a_finished_job_whose_file_was_being_written_at_the_interruption_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write, calls = JobFiles.write, []
+
+    def interrupted(self: JobFiles, key: str, *rest: Any) -> None:
+        calls.append(key)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        write(self, key, *rest)
+
+    monkeypatch.setattr(JobFiles, "write", interrupted)
+    campaign = hm.sweep(jobs.square, points(4), executor="here", folder=tmp_path)
+    assert campaign.status.startswith("stopped with 2 of 4 jobs done")
+    assert len(list(tmp_path.glob("jobs/*.npz"))) == 2
+    again = hm.sweep(jobs.square, points(4), executor="here", folder=tmp_path)
+    assert (again.status, again.reused) == ("complete", 2)
 
 
 # -- what makes a job another one ------------------------------------------------------------------------------
