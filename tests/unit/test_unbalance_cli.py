@@ -174,3 +174,7 @@ def test_a_static_deflection_is_drawn_through_its_places(tmp_path: Path) -> None
     assert any(text.startswith("bearing a") and f"{result.bearing_load('bearing_a')[1]:.4g} N" in text for text in texts)
     for path in hm.save_figure(ax, tmp_path / "static"):
         assert path.stat().st_size > 5000
+
+
+def test_speeds_without_a_peak_are_said_to_have_none() -> None:
+    assert "no peak of the unbalance response from 10 to 30 rad/s" in " ".join(call("--speeds", "10:30:5").split())

@@ -114,7 +114,9 @@ class UnbalanceResponse(Result):
         """Peaks of each place."""
         heads = ("place", "speed [rad/s]", "amplitude, 0-peak [m]", "half-power width [rad/s]", "quality factor")
         rows = tuple((one.place, one.speed, one.amplitude, one.width, one.quality) for one in self.peaks)
-        return (PrintedTable(title="peaks of the unbalance response", heads=heads, rows=rows),)
+        first, last = float(np.min(self.speeds)), float(np.max(self.speeds))
+        title = "peaks of the unbalance response" if rows else f"no peak of the unbalance response from {first:g} to {last:g} rad/s"
+        return (PrintedTable(title=title, heads=heads, rows=rows),)
 
     @property
     def peaks(self) -> tuple[ResponsePeak, ...]:
