@@ -14,14 +14,26 @@ def turning_bodies(network: Network) -> tuple[str, ...]:
 
 
 def connections(network: Network) -> tuple[str, ...]:
-    """Shafts, couplings and meshes of gears."""
-    return tuple(element.name for element in network.elements if isinstance(element, Connection) and element.flanges)
+    """Torsional shafts, couplings and meshes of gears.
+
+    A piece of shaft that bends is one piece of metal between two stations: nothing in it has play, slips or creeps.  An effect can be
+    put there all the same, ``scene.with_effect(..., at="section_1")``.
+    """
+    bending = set(shafts(network))
+    found = (element.name for element in network.elements if isinstance(element, Connection) and element.flanges)
+    return tuple(name for name in found if name not in bending)
 
 
 def gears(network: Network) -> tuple[str, ...]:
     """Connections between a wave generator, a flexspline and a circular spline."""
     wanted = {"wave_generator", "flexspline", "circular_spline"}
     return tuple(e.name for e in network.elements if isinstance(e, Connection) and wanted <= set(e.flanges))
+
+
+def couplings(network: Network) -> tuple[str, ...]:
+    """Torsional shafts and couplings, without the meshes of gears: where two parts are held together by friction."""
+    meshes = set(gears(network))
+    return tuple(name for name in connections(network) if name not in meshes)
 
 
 def motors(network: Network) -> tuple[str, ...]:
@@ -108,6 +120,7 @@ PLACES: Mapping[str, Callable[[Network], tuple[str, ...]]] = {
     "body": turning_bodies,
     "connection": connections,
     "gear": gears,
+    "coupling": couplings,
     "motor": motors,
     "sensor": sensors,
     "rotor": rotors,

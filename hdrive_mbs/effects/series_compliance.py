@@ -5,16 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hdrive_mbs.effects.effect import Effect
-from hdrive_mbs.errors import PlaceError
+from hdrive_mbs.effects.series_effect import SeriesEffect
 from hdrive_mbs.expression import Value
-from hdrive_mbs.network.draft import Draft
-from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.quantities import parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class SeriesCompliance(Effect):
+class SeriesCompliance(SeriesEffect):
     """A spring with a damper beside it, in line with everything that acts at a connection.
 
     tau = T(x - y, v - dy/dt) = (y + t dy/dt)/C,  so  dy/dt = (C T(x - y, v) - y)/(t + C d),  d = T(x - y, v + 1) - T(x - y, v)
@@ -31,30 +28,13 @@ class SeriesCompliance(Effect):
     compliance: float = parameter("rad/(N m)", "C of the extra spring", low=0.0, high=10.0, typical=(1e-7, 1e-2))
     relaxation_time: float = parameter("s", "t, damping over stiffness of the extra spring", default=2e-4, above=0.0, high=1.0)
 
-    acts_on: ClassVar[str] = "connection"
-    kind: ClassVar[str] = "hidden state"
     family: ClassVar[str] = "extra_compliance"
     signature: ClassVar[str] = (
         "more twist at every torque than the parts have, and a lower resonance, also where the connection itself is stiff"
     )
 
-    def apply(self, draft: Draft, place: str, name: str) -> None:
-        connection = draft.connection(place, "SeriesCompliance")
-        if connection.series is not None:
-            raise PlaceError(f"{place!r} has a SeriesCompliance already; give one effect the sum of both compliances.")
-        if self.compliance == 0.0:
-            return
+    def at_rest(self) -> bool:
+        return self.compliance == 0.0
 
-        def series(moment: Moment, twist: Value, rate: Value) -> tuple[Value, Value, Value]:
-            deflection = moment.state(state)
-            torque = connection.inner(moment, twist - deflection, rate)
-            damping = connection.inner(moment, twist - deflection, rate + 1.0) - torque
-            its_rate = (self.compliance * torque - deflection) / (self.relaxation_time + self.compliance * damping)
-            return deflection, its_rate, torque - damping * its_rate
-
-        def deflection_rate(moment: Moment) -> Value:
-            whole = connection.build()
-            return series(moment, whole.stretch(moment), whole.rate(moment))[1]
-
-        state = draft.add_state(f"{name}.deflection", unit="rad", initial=0.0, rate=deflection_rate)
-        connection.series = series
+    def deflection_rate(self, deflection: Value, torque: Value, damping: Value) -> Value:
+        return (self.compliance * torque - deflection) / (self.relaxation_time + self.compliance * damping)

@@ -12,7 +12,8 @@ from hdrive_mbs.network.moment import Moment
 Torque = Callable[[Moment, Value, Value], Value]
 
 Series = Callable[[Moment, Value, Value], tuple[Value, Value, Value]]
-"""From the whole stretch and its rate: deflection of what sits in series, its rate, and the torque through both."""
+"""From the stretch and its rate over one element in line and all that is inside it: the element's own deflection, its rate, and the torque
+through both."""
 
 
 @dataclass
@@ -20,7 +21,7 @@ class ConnectionDraft:
     """A connection that effects may still change.
 
     ``law(moment, stretch, rate)`` is the constitutive law; ``parallel`` holds torques that act
-    beside it; ``series`` is a spring in line with both; ``terms`` are kinematic errors that add to
+    beside it; ``series`` holds elements in line with both, from the inside out; ``terms`` are kinematic errors that add to
     the stretch; ``bodies`` names the body at each flange.  ``gap`` is the full width about zero in
     which the law has no elastic torque, 0 where it has none or nobody knows.
     """
@@ -32,7 +33,7 @@ class ConnectionDraft:
     terms: list[KinematicTerm] = field(default_factory=list)
     bodies: dict[str, str] = field(default_factory=dict)
     claims: list[Claim] = field(default_factory=list)
-    series: Series | None = None
+    series: list[Series] = field(default_factory=list)
     gap: float = 0.0
 
     def wrap(self, change: Callable[[Torque], Torque]) -> None:
@@ -55,21 +56,21 @@ class ConnectionDraft:
             torque = torque + extra(moment, stretch, rate)
         return torque
 
-    def inside(self, moment: Moment) -> tuple[Value, Value]:
-        """Stretch and rate that the law sees: the whole less what sits in series."""
+    def through(self, count: int) -> Torque:
+        """Torque through the law, what acts beside it, and the innermost ``count`` elements in line with it."""
+        if count == 0:
+            return self.inner
+        return lambda moment, stretch, rate: self.series[count - 1](moment, stretch, rate)[2]
+
+    def inside(self, moment: Moment, count: int = 0) -> tuple[Value, Value]:
+        """Stretch and rate over the law and the innermost ``count`` elements: the whole less what sits further out."""
         whole = self.build()
         stretch, rate = whole.stretch(moment), whole.rate(moment)
-        if self.series is None:
-            return stretch, rate
-        deflection, its_rate, _ = self.series(moment, stretch, rate)
-        return stretch - deflection, rate - its_rate
+        for outer in reversed(self.series[count:]):
+            deflection, its_rate, _ = outer(moment, stretch, rate)
+            stretch, rate = stretch - deflection, rate - its_rate
+        return stretch, rate
 
     def build(self) -> Connection:
-        torque = self.law if not self.parallel else self.inner
-        if self.series is not None:
-            torque = self._through
+        torque = self.through(len(self.series)) if self.series or self.parallel else self.law
         return Connection(self.name, dict(self.factors), torque, tuple(self.terms), parts=tuple(self.claims), flanges=dict(self.bodies))
-
-    def _through(self, moment: Moment, stretch: Value, rate: Value) -> Value:
-        assert self.series is not None
-        return self.series(moment, stretch, rate)[2]

@@ -35,6 +35,7 @@ from hdrive_mbs.effects.bouc_wen_hysteresis import BoucWenHysteresis
 from hdrive_mbs.effects.cogging import Cogging
 from hdrive_mbs.effects.coulomb_stribeck_friction import CoulombStribeckFriction
 from hdrive_mbs.effects.coupling_backlash import CouplingBacklash
+from hdrive_mbs.effects.creep import Creep
 from hdrive_mbs.effects.dahl_friction import DahlFriction
 from hdrive_mbs.effects.dahl_hysteresis import DahlHysteresis
 from hdrive_mbs.effects.eccentric_load import EccentricLoad
@@ -45,6 +46,7 @@ from hdrive_mbs.effects.flexible_inertia import FlexibleInertia
 from hdrive_mbs.effects.harmonic_kinematic_error import HarmonicKinematicError
 from hdrive_mbs.effects.hidden_mode import HiddenMode
 from hdrive_mbs.effects.iwan_hysteresis import IwanHysteresis
+from hdrive_mbs.effects.joint_slip import JointSlip
 from hdrive_mbs.effects.kinematic_error import KinematicError
 from hdrive_mbs.effects.lost_motion import LostMotion
 from hdrive_mbs.effects.lugre_friction import LuGreFriction
@@ -215,6 +217,8 @@ EXAMPLES = {
         Example(HiddenMode(inertia=0.2, natural_frequency=150.0, damping_ratio=0.3), "load", ("inertia",)),
         Example(FlexibleInertia(share=0.3, natural_frequency=150.0, damping_ratio=0.3), "load", ("share",)),
         Example(SeriesCompliance(compliance=2e-5), "gear", ("compliance",)),
+        Example(Creep(compliance=2e-5, creep_time=5e-3), "gear", ("compliance",)),
+        Example(JointSlip(slip_torque=0.02, slip_rate=0.5), "coupling", ("slip_rate",)),
         Example(ThermalDrift(viscous_change=5.0, friction_change=-3.0, time_constant=0.05), "load", ("viscous_change", "friction_change")),
         Example(SensorGain(error=0.1), "torque_sensor", ("error",)),
         Example(SensorOffset(offset=0.5), "torque_sensor", ("offset",)),
@@ -229,7 +233,7 @@ EXAMPLES = {
 }
 
 
-TRAIN_KINDS = ("body", "connection", "gear", "motor", "sensor")
+TRAIN_KINDS = ("body", "connection", "gear", "coupling", "motor", "sensor")
 """Kinds of places that a drive train has; effects at others are held to the contract in test_rotor_effects.py."""
 
 
@@ -540,9 +544,9 @@ def test_its_places_are_those_where_it_can_be_put(example: Example) -> None:
                 scene.with_effect(example.effect, at=place, name="it")
             except PlaceError:
                 refused.add(place)
-        # what is left takes the effect but makes no sense for it: a ripple on what is no motor
+        # what is left takes the effect but makes no sense for it: a ripple on what is no motor, a clamp inside a gear
         left = every - set(listed) - refused
-        assert not left or kind.acts_on == "motor", left
+        assert not left or kind.acts_on == "motor" or (kind.acts_on == "coupling" and left == set(PLACES["gear"](scene.network()))), left
 
 
 def test_a_compiled_run_equals_that_of_the_engine(example: Example) -> None:

@@ -51,6 +51,7 @@ EXAMPLES = {
         ),
         Example(hm.ExternalShock(amplitude=500.0, start=0.013, length=5e-3, direction=1.0), "left", ("amplitude",)),
         Example(hm.GroundVibration(amplitude=50.0, frequency=300.0, phase=0.4, direction=1.0), "left", ("amplitude",)),
+        Example(hm.MagneticPull(stiffness=2e4, centre_x=1e-4, throb=1e4, frequency=300.0, phase=0.3), "disc", ("stiffness", "throb")),
         Example(hm.ProbeRunout(once=1e-4, once_phase=0.3, twice=5e-5, thrice=1e-5), "disc", ("once", "twice", "thrice")),
         Example(hm.ProbeGain(error=0.1, curvature=100.0), "probe", ("error", "curvature")),
         Example(hm.ProbeCrossTalk(share=0.1), "probe", ("share",)),
@@ -297,9 +298,9 @@ def test_at_an_unknown_place_it_says_so(example: Example) -> None:
         line().with_effect(example.effect, at="dics").network()
 
 
-def test_every_kind_of_place_but_gears_is_on_the_line() -> None:
+def test_every_kind_of_place_but_gears_and_couplings_is_on_the_line() -> None:
     network = line().network()
-    assert {kind for kind, find in PLACES.items() if not find(network)} == {"gear"}
+    assert {kind for kind, find in PLACES.items() if not find(network)} == {"connection", "gear", "coupling"}
 
 
 def test_a_pair_of_amplitude_and_phase_turns_like_a_vector(example: Example) -> None:

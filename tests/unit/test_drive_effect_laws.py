@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+import scipy.linalg
 from scipy.integrate import solve_ivp
 
 import hdrive_mbs as hm
@@ -493,10 +494,80 @@ def test_hysteresis_in_line_with_a_compliance_sees_its_own_twist() -> None:
     assert hm.energy_balance(response).energy_error < 1e-6
 
 
-def test_a_second_compliance_at_a_connection_is_refused() -> None:
-    once = spring_to_ground().with_effect(hm.SeriesCompliance(compliance=1e-4), at="shaft")
-    with pytest.raises(PlaceError, match="sum of both compliances"):
-        once.with_effect(hm.SeriesCompliance(compliance=1e-4), at="shaft").network()
+def test_two_compliances_in_line_are_three_springs_one_behind_the_other() -> None:
+    # a chain of k, C_1 with t_1 and C_2 with t_2, held at a twist: three linear equations, solved with the matrix exponential
+    stiffness, damping = 1e3, 0.5
+    chain = ((4e-4, 0.02), (7e-4, 0.3))
+    scene = spring_to_ground(stiffness, damping, 1e9)  # a disc that nothing turns
+    for k, (compliance, time) in enumerate(chain):
+        kind = hm.Creep(compliance=compliance, creep_time=time) if k else hm.SeriesCompliance(compliance=compliance, relaxation_time=time)
+        scene = scene.with_effect(kind, at="shaft", name=f"element_{k}")
+    held = 0.01
+    response = hm.simulate(scene, 1.0, solver=TIGHT, initial={"disc.angle": held})
+    # tau = k (x - y_1 - y_2) - d (y_1' + y_2'),  y_i + t_i y_i' = C_i tau
+    (c_1, t_1), (c_2, t_2) = chain
+    left = np.array([[t_1 + c_1 * damping, c_1 * damping], [c_2 * damping, t_2 + c_2 * damping]])
+    right = -np.array([[1.0 + c_1 * stiffness, c_1 * stiffness], [c_2 * stiffness, 1.0 + c_2 * stiffness]])
+    matrix, end = np.linalg.solve(left, right), -np.linalg.solve(right, stiffness * held * np.array([c_1, c_2]))
+    times = np.linspace(0.0, 1.0, 21)
+    wanted = np.array([end - scipy.linalg.expm(matrix * t) @ end for t in times])
+    for k in range(2):
+        np.testing.assert_allclose(response.at(f"element_{k}.deflection", times), wanted[:, k], atol=1e-5 * held)
+
+
+def test_a_creeping_spring_is_the_standard_linear_solid() -> None:
+    stiffness, compliance, time, held = 1e3, 1e-3, 0.2, 0.01
+    scene = spring_to_ground(stiffness, 0.0, 1e9).with_effect(hm.Creep(compliance=compliance, creep_time=time), at="shaft", name="it")
+    response = hm.simulate(scene, 1.0, solver=TIGHT, initial={"disc.angle": held})
+    slow = stiffness / (1.0 + stiffness * compliance)
+    torque = held * (slow + (stiffness - slow) * np.exp(-response.times * (1.0 + stiffness * compliance) / time))
+    # the disc of 1e9 kg m^2 moves by torque t^2/2J = 5e-7 of the twist
+    np.testing.assert_allclose(response["shaft.torque"].values, torque, rtol=1e-5)
+
+
+def test_a_creeping_spring_takes_most_at_the_frequency_of_its_text() -> None:
+    # complex stiffness k (1 + i w t)/(1 + k C + i w t): its phase is largest at w t = sqrt(1 + k C), with tan = k C/(2 sqrt(1 + k C))
+    stiffness, compliance, time = 1e3, 3e-3, 0.05
+    lag = []
+    for factor in (0.7, 1.0, 1.4):
+        omega = factor * math.sqrt(1.0 + stiffness * compliance) / time
+        motor = hm.Motor(inertia=1e-3, viscous=1.0, characteristic=lambda time, speed, w=omega: np.sin(w * time) + 0.0 * speed)
+        parts = {"motor": motor, "shaft": hm.Shaft(stiffness=stiffness)}
+        scene = hm.Scene(name="shaken", parts=parts, connections=[("motor", "shaft", "ground")])
+        scene = scene.with_effect(hm.Creep(compliance=compliance, creep_time=time), at="shaft")
+        response = hm.simulate(scene, 12 * 2 * math.pi / omega, solver=TIGHT)
+        times = np.linspace(10 * 2 * math.pi / omega, 12 * 2 * math.pi / omega, 400, endpoint=False)
+        wave = np.exp(-1j * omega * times)
+        lag.append(np.angle((response.at("shaft.torque", times) @ wave) / (response.at("shaft.twist", times) @ wave)))
+    assert lag[1] > max(lag[0], lag[2])
+    assert math.tan(lag[1]) == pytest.approx(stiffness * compliance / (2.0 * math.sqrt(1.0 + stiffness * compliance)), rel=1e-3)
+
+
+def test_a_joint_under_a_steady_torque_slips_at_its_rate_and_keeps_the_twist() -> None:
+    pushed = hm.Motor(inertia=0.1, viscous=3.0, characteristic=lambda time, speed: np.where(time < 1.0, 12.0, 4.0) + 0.0 * speed)
+    parts = {"shaft": hm.Shaft(stiffness=1e3, damping=0.5), "disc": pushed}
+    scene = hm.Scene(name="clamp", parts=parts, connections=[("disc", "shaft", "ground")])
+    scene = scene.with_effect(hm.JointSlip(slip_torque=8.0, slip_rate=0.2), at="shaft", name="it")
+    response = hm.simulate(scene, 2.0, solver=TIGHT)
+    slipped = response.at("it.deflection", np.array([0.5, 0.9, 1.2, 2.0]))
+    # steady creep: the shaft's torque is 12 N m less the drag 3 w at w = r (tau/T_s - 1)
+    rate = 0.2 * (12.0 / 8.0 - 1.0) / (1.0 + 3.0 * 0.2 / 8.0)
+    assert abs(slipped[1] - slipped[0]) == pytest.approx(0.4 * rate, rel=1e-6)
+    assert slipped[3] == pytest.approx(slipped[2], abs=1e-12)  # 4 N m hold
+    assert hm.energy_balance(response).energy_error < 1e-6
+
+
+def test_a_joint_that_slips_fast_is_a_safety_clutch() -> None:
+    pushed = hm.Motor(inertia=0.1, characteristic=lambda time, speed: 20.0 + 0.0 * time)
+    parts = {"shaft": hm.Shaft(stiffness=1e3, damping=0.5), "disc": pushed}
+    scene = hm.Scene(name="clutch", parts=parts, connections=[("disc", "shaft", "ground")])
+    scene = scene.with_effect(hm.JointSlip(slip_torque=8.0, slip_rate=1e4), at="shaft", name="it")
+    response = hm.simulate(scene, 0.3, solver=TIGHT)
+    # the clutch carries T_s (1 + w/r): the disc gains (20 - 8 - 8 w/r)/J
+    late = response.times > 0.1
+    assert np.max(np.abs(response["shaft.torque"].values[late])) == pytest.approx(8.0, rel=0.005)
+    speed = np.abs(response.at("disc.speed", np.array([0.1, 0.3])))
+    assert speed[1] - speed[0] == pytest.approx(0.2 * 12.0 / 0.1, rel=0.002)
 
 
 # -- time ----------------------------------------------------------------------------------------------------------

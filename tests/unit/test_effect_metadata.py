@@ -16,7 +16,7 @@ from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.quantities import parameter, table
 from hdrive_mbs.quantity import Quantity
-from models import drive_bench, harmonic_drive_train, two_rotor_line
+from models import drive_bench, harmonic_drive_train, robot_joint_line, rotor_bench, two_rotor_line
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,7 +55,9 @@ def test_laws_of_one_phenomenon_share_a_family() -> None:
         assert {kind.family for kind in kinds} == {family}
 
 
-@pytest.mark.parametrize(("name", "value", "allowed"), [("kind", "strange", "hidden state"), ("acts_on", "wheel", "gear, motor, sensor")])
+@pytest.mark.parametrize(
+    ("name", "value", "allowed"), [("kind", "strange", "hidden state"), ("acts_on", "wheel", "gear, coupling, motor, sensor")]
+)
 def test_an_unknown_kind_or_place_is_refused_where_the_class_is_written(name: str, value: str, allowed: str) -> None:
     with pytest.raises(ParameterError, match=rf"Odd\.{name} = '{value}': must be one of .*{allowed}"):
         type("Odd", (hm.TorqueEffect,), {name: value, "__annotations__": {}})
@@ -93,6 +95,19 @@ def test_a_torque_between_bodies_is_no_connection_to_put_an_effect_at() -> None:
     assert "friction" not in connections(scene.network())
 
 
+def test_a_piece_of_shaft_that_bends_is_no_place_for_play_or_slip_and_a_coupling_beside_it_is() -> None:
+    joint = robot_joint_line.build().network()
+    bending = set(PLACES["shaft"](joint))
+    assert bending
+    assert "gear" not in hm.JointSlip.places(joint)
+    for kind in (hm.CouplingBacklash, hm.BoucWenHysteresis, hm.JointSlip, hm.Creep):
+        assert "coupling" in kind.places(joint)
+        assert not bending & set(kind.places(joint))
+    assert PLACES["connection"](rotor_bench.build().network()) == ()
+    piece = sorted(PLACES["shaft"](rotor_bench.build().network()))[0]
+    rotor_bench.build().with_effect(hm.JointSlip(slip_torque=5.0, slip_rate=1e-3), at=piece).network()  # who asks for it has it
+
+
 def test_a_prescribed_motor_and_what_the_ground_holds_are_no_places() -> None:
     motion = hm.SpeedRamp(start=0.0, end=10.0, duration=1.0)
     network = harmonic_drive_train.build().replacing({"motor.characteristic": hm.IdealSpeedMotor(motion=motion)}).network()
@@ -128,7 +143,7 @@ def test_an_effect_of_a_users_own_can_name_its_places() -> None:
             draft.body(place)
 
     assert LoadOnly.places(drive_bench.build().network()) == ("load",)
-    turning = {"body", "connection", "gear", "motor", "sensor"}
+    turning = {"body", "connection", "gear", "coupling", "motor", "sensor"}
     assert set(PLACES) == turning | {"rotor", "station", "bearing", "support", "shaft", "drive end", "probe", "surface"}
 
 
