@@ -10,6 +10,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import hdrive_mbs as hm
 from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
@@ -531,6 +532,34 @@ def test_the_ground_shakes_a_housing_at_its_own_frequency() -> None:
     for place in ("bearing_1.housing.x", "bearing_1.housing.y", "rotor_1.x", "rotor_2.y"):
         wanted = (q[place] * np.exp(1j * frequency * response.times)).real
         np.testing.assert_allclose(response[place].values, wanted, rtol=0.0, atol=1e-5 * abs(q[place]))
+
+
+def test_a_magnet_pulls_the_disc_over_and_lowers_its_frequency() -> None:
+    pull, centre = 0.2 * STIFFNESS, complex(3e-5, -2e-5)
+    scene = damped_disc(25.0).with_effect(hm.MagneticPull(stiffness=pull, centre_x=centre.real, centre_y=centre.imag), at="disc")
+    left = STIFFNESS - pull
+    response = hm.simulate(scene, 2.0, solver=STEP)
+    # K z = k (z - c); what the start shook has faded by exp(-12.5/2 2.0) = 4e-6
+    assert abs(z_of(response, "disc")[-1] + pull * centre / left) < 1e-5 * abs(pull * centre / left)
+    swing = z_of(response, "disc")[:2000] + pull * centre / left
+    rate = 25.0 / (2.0 * MASS)
+    ringing = math.sqrt(left / MASS - rate**2)
+    times = response.times[:2000]
+    # from rest at zero: z - z_s = -z_s exp(-r t) (cos w t + r/w sin w t)
+    wanted = pull * centre / left * np.exp(-rate * times) * (np.cos(ringing * times) + rate / ringing * np.sin(ringing * times))
+    np.testing.assert_allclose(swing, wanted, rtol=0.0, atol=1e-6 * abs(pull * centre / left))
+
+
+def test_a_magnet_that_throbs_follows_its_equation_of_hill() -> None:
+    magnet = hm.MagneticPull(stiffness=2e4, centre_x=4e-5, throb=6e4, frequency=200.0 * math.pi, phase=0.7)
+    response = hm.simulate(damped_disc(25.0).with_effect(magnet, at="disc"), 0.3, solver=hm.RungeKutta4(step=5e-5))
+
+    def motion(t: float, y: np.ndarray) -> list[float]:
+        pull = 2e4 + 6e4 * math.cos(200.0 * math.pi * t + 0.7)
+        return [y[1], (pull * (y[0] - 4e-5) - STIFFNESS * y[0] - 25.0 * y[1]) / MASS]
+
+    wanted = solve_ivp(motion, (0.0, 0.3), [0.0, 0.0], t_eval=response.times, rtol=1e-10, atol=1e-14).y[0]
+    np.testing.assert_allclose(response["disc.x"].values, wanted, rtol=0.0, atol=1e-6 * np.max(np.abs(wanted)))
 
 
 def test_what_acts_on_a_support_needs_a_housing() -> None:
