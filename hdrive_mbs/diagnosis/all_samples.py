@@ -11,7 +11,8 @@ import numpy as np
 
 from hdrive_mbs.diagnosis.choosing import beyond
 from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.located import Located, bends, localised_about, located
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.located import Located, located
 from hdrive_mbs.diagnosis.search import HOPS
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.tasks import FINE, NEAR, Task, run_task
@@ -38,9 +39,9 @@ class Last:
     place: Located
 
 
-def as_given(fine: Simulator, null: Fitted) -> Fitted | None:
+def as_given(fine: Simulator, nominal: Hypothesis) -> Fitted | None:
     """The nominal model as its data sheet says; None where it cannot be run."""
-    return run_task(fine, Task(null.hypothesis, np.zeros_like(null.z), None, 0, 1.0))
+    return run_task(fine, Task(nominal, np.zeros(nominal.size), None, 0, 1.0))
 
 
 def on_all_samples(
@@ -53,23 +54,15 @@ def on_all_samples(
     Raises AnalysisError where the nominal model cannot be simulated.
     """
     tasks = [_of_nominal(null), *_of_found(found, null.chi_fit < NEAR)]
-    work: list[Work] = [partial(_given, null=null, known=place), *(partial(run_task, task=task) for task in tasks)]
-    (nominal, place), refitted, *others = team.map(_done, fine, work, said)
+    work: list[Work] = [partial(as_given, nominal=null.hypothesis), *(partial(run_task, task=task) for task in tasks)]
+    nominal, refitted, *others = team.map(_done, fine, work, said)
     if nominal is None or refitted is None:
         raise AnalysisError("The nominal scene cannot be simulated through all of the records; look at its start values and inputs.")
-    return Last(nominal, refitted, tuple(others), place or located(fine, localised_about(fine, nominal, refitted)))
+    return Last(nominal, refitted, tuple(others), place or located(fine, refitted))
 
 
 def _done(fine: Simulator, work: Work) -> Any:
     return work(fine)
-
-
-def _given(fine: Simulator, null: Fitted, known: Located | None) -> tuple[Fitted | None, Located | None]:
-    """The model as given, and where the gap lies if that is looked for from there."""
-    nominal = as_given(fine, null)
-    if nominal is None or known is not None or not bends(fine):
-        return nominal, known
-    return nominal, located(fine, nominal)
 
 
 def _of_nominal(null: Fitted) -> Task:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +14,8 @@ from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import enough, leaves
 from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.located import Located, bends, localised_about, located
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.located import Located, bends, located
 from hdrive_mbs.diagnosis.pairs import alone, contenders, joined, moved, swapped
 from hdrive_mbs.diagnosis.search import Depth, Report, Search, fit_nominal, search
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -72,18 +74,43 @@ def _with(search_: Search, more: Sequence[Found]) -> Search:
     return replace(search_, found=tuple(found))
 
 
+def _begun(team: Team, coarse: Simulator, fine: Simulator, factors: Sequence[Factor], said: Report) -> tuple[Fitted, Located | None]:
+    """The nominal model refitted and, side by side with it, where the gap of a rotor line lies, which is looked for from the data sheet.
+
+    Raises AnalysisError where the nominal model cannot be simulated.
+    """
+    if not bends(fine):
+        said("fitting the nominal model", 0, 1)
+        [null] = team.map(fit_nominal, coarse, [tuple(factors)])
+        return null, None
+    done = partial(said, "fitting the nominal model, looking where the gap lies")
+    null, place = team.map(_begin, (coarse, fine, tuple(factors)), [_refitted, _placed], done)
+    return null, place
+
+
+Beginning = Callable[[Simulator, Simulator, Sequence[Factor]], Any]
+
+
+def _begin(shared: tuple[Simulator, Simulator, Sequence[Factor]], work: Beginning) -> Any:
+    return work(*shared)
+
+
+def _refitted(coarse: Simulator, fine: Simulator, factors: Sequence[Factor]) -> Fitted:
+    return fit_nominal(coarse, factors)
+
+
+def _placed(coarse: Simulator, fine: Simulator, factors: Sequence[Factor]) -> Located | None:
+    nominal = as_given(fine, Hypothesis(factors=tuple(factors)))
+    return None if nominal is None else located(fine, nominal)
+
+
 def _there(
-    team: Team, coarse: Simulator, fine: Simulator, null: Fitted, single: Search, tried: Sequence[Candidate], said: Report
-) -> tuple[Located | None, tuple[Found, ...]]:
-    """Where the gap of a rotor line lies, if the search left something, and what laws of that place explain of it."""
-    if not bends(fine) or not leaves(min((left(item.fitted) for item in single.found), default=left(null)), null, LEFT):
-        return None, ()
-    said("looking where the gap lies", 0, 1)
-    nominal = as_given(fine, null)
-    if nominal is None:
-        return None, ()
-    place = located(fine, localised_about(fine, nominal, null))
-    return place, at_the_place(team, coarse, null, place, tried, partial(_said, said, "at the place of the gap"))
+    team: Team, coarse: Simulator, null: Fitted, single: Search, place: Located | None, tried: Sequence[Candidate], said: Report
+) -> tuple[Found, ...]:
+    """What laws of the place of the gap explain of it, if the search left something."""
+    if place is None or not leaves(min((left(item.fitted) for item in single.found), default=left(null)), null, LEFT):
+        return ()
+    return at_the_place(team, coarse, null, place, tried, partial(_said, said, "at the place of the gap"))
 
 
 def _second(
@@ -150,10 +177,9 @@ def gather(
     Raises AnalysisError where the nominal model cannot be simulated.
     """
     said = report or (lambda stage, done, total: None)
-    said("fitting the nominal model", 0, 1)
-    [null] = team.map(fit_nominal, coarse, [tuple(factors)])
+    null, place = _begun(team, coarse, fine, factors, said)
     single = search(team, coarse, null, groups, tried, report=said)
-    place, there = _there(team, coarse, fine, null, single, tried, said)
+    there = _there(team, coarse, null, single, place, tried, said)
     single = _with(single, there)
     pair, double, others = _second(team, coarse, null, groups, tried, single, there, said)
     single = _with(single, others)

@@ -28,7 +28,9 @@ class Located:
 
 
 def located(fine: Simulator, about: Fitted) -> Located:
-    """Places of the gap, looked for from a fitted model, see ``localised_about``, on records that are not held out whole.
+    """Places of the gap, looked for from a fitted model on records that are not held out whole.
+
+    On a rotor line that is the model as given: the localisation refits on its own there, and a missing cause bends the fitted one most.
 
     Without places, and with the reason as doubt, where they cannot be looked for.
     """
@@ -51,14 +53,6 @@ def _located(fine: Simulator, about: Fitted) -> Located:
         )
     except HdriveError as error:
         return Located(places=(), doubt=f"not looked for: {error}", forces=(), turned=())
-
-
-def localised_about(fine: Simulator, nominal: Fitted, null: Fitted) -> Fitted:
-    """The model that the place of a gap is looked for from.
-
-    On a rotor line that is the one as given: the localisation refits on its own there, and a missing cause bends the fitted one most.
-    """
-    return nominal if bends(fine) else null
 
 
 def bends(fine: Simulator) -> bool:

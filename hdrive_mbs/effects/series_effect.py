@@ -20,7 +20,8 @@ class SeriesEffect(Effect):
 
     with the torque T(twist, rate) of the connection, a part of whose whole twist x is the element's deflection y.  A is the torque
     that would pass if the element stood still, and tau = A - d dy/dt what passes: exact where T has linear damping d.  No mass sits
-    between the two, so y is a first-order state.  Elements at one connection sit one behind the other, the first one innermost.
+    between the two, so y is a first-order state.  Elements at one connection sit one behind the other, the first one innermost; each asks
+    what is inside it twice, so that every further one makes the equations several times as long.
     """
 
     acts_on: ClassVar[str] = "connection"

@@ -6,12 +6,14 @@ import dataclasses
 import math
 from collections.abc import Sequence
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.linalg import expm
 
 import hdrive_mbs as hm
+from hdrive_mbs.diagnosis import all_samples, gather
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.beginnings import begun_at
 from hdrive_mbs.diagnosis.candidates import candidates
@@ -24,7 +26,7 @@ from hdrive_mbs.diagnosis.locate.linear import Transfers
 from hdrive_mbs.diagnosis.locate.motion import KnownForce, columns_of
 from hdrive_mbs.diagnosis.locate.observer import Observer, observer
 from hdrive_mbs.diagnosis.locate.response import KEPT
-from hdrive_mbs.diagnosis.located import localised_about, located
+from hdrive_mbs.diagnosis.located import located
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.periods import Periods
 from hdrive_mbs.diagnosis.result import NOWHERE
@@ -331,13 +333,26 @@ def test_an_observer_forgets_a_vibration_soon_after_its_force_has_ended() -> Non
     assert np.max(np.abs(errors[:, later:])) < 1e-3 * np.max(np.abs(errors[:, :end]))
 
 
-def test_a_diagnosis_looks_for_the_place_from_the_model_as_given_on_rotor_lines_alone() -> None:
+def test_a_diagnosis_looks_for_the_place_from_the_model_as_given_on_rotor_lines_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """A missing cause bends the refitted model of a rotor line, and the localisation refits on its own."""
+    for name, made in {
+        "fit_nominal": lambda coarse, factors: "refitted",
+        "as_given": lambda fine, nominal: "as given",
+        "located": lambda fine, about: f"about the model {about}",
+    }.items():
+        monkeypatch.setattr(gather, name, made)
+    monkeypatch.setattr(all_samples, "located", lambda fine, about: f"about the model {about}")
+    monkeypatch.setattr(all_samples, "as_given", lambda fine, nominal: "as given")
+    monkeypatch.setattr(all_samples, "run_task", lambda fine, task: "refitted")
     drive = diagnosis_cases.bench()
     trials = {"lateral": [trial()], "torsional": drive.trials(diagnosis_cases.quiet()[0])}
-    for kind, wanted in (("lateral", "nominal"), ("torsional", "null")):
-        fine = SimpleNamespace(trials=trials[kind])
-        assert localised_about(fine, "nominal", "null") == wanted  # type: ignore[arg-type, comparison-overlap]
+    null: Any = SimpleNamespace(chi_fit=100.0, hypothesis=None, z=None)
+    for kind, wanted in (("lateral", "as given"), ("torsional", "refitted")):
+        fine: Any = SimpleNamespace(trials=trials[kind])
+        with Team(1) as team:
+            _, place = gather._begun(team, fine, fine, (), lambda *said: None)
+            last = all_samples.on_all_samples(team, fine, null, [], place, lambda *said: None)
+        assert last.place == f"about the model {wanted}"
 
 
 def test_a_flaw_of_an_inner_race_is_named_with_its_order_from_the_force_at_its_bearing() -> None:
