@@ -114,6 +114,7 @@ from hdrive_mbs.effects.cogging import Cogging as Cogging
 from hdrive_mbs.effects.coulomb_stribeck_friction import CoulombStribeckFriction as CoulombStribeckFriction
 from hdrive_mbs.effects.coupling_backlash import CouplingBacklash as CouplingBacklash
 from hdrive_mbs.effects.crack_effect import CrackEffect as CrackEffect
+from hdrive_mbs.effects.creep import Creep as Creep
 from hdrive_mbs.effects.dahl_friction import DahlFriction as DahlFriction
 from hdrive_mbs.effects.dahl_hysteresis import DahlHysteresis as DahlHysteresis
 from hdrive_mbs.effects.damped_clearance import DampedClearance as DampedClearance
@@ -140,6 +141,7 @@ from hdrive_mbs.effects.inner_race_pass import InnerRacePass as InnerRacePass
 from hdrive_mbs.effects.inner_race_pulses import InnerRacePulses as InnerRacePulses
 from hdrive_mbs.effects.internal_damping import InternalDamping as InternalDamping
 from hdrive_mbs.effects.iwan_hysteresis import IwanHysteresis as IwanHysteresis
+from hdrive_mbs.effects.joint_slip import JointSlip as JointSlip
 from hdrive_mbs.effects.kinematic_error import KinematicError as KinematicError
 from hdrive_mbs.effects.lateral_effect import LateralEffect as LateralEffect
 from hdrive_mbs.effects.loaded_misalignment import LoadedMisalignment as LoadedMisalignment
@@ -147,6 +149,7 @@ from hdrive_mbs.effects.loose_fit import LooseFit as LooseFit
 from hdrive_mbs.effects.looseness import Looseness as Looseness
 from hdrive_mbs.effects.lost_motion import LostMotion as LostMotion
 from hdrive_mbs.effects.lugre_friction import LuGreFriction as LuGreFriction
+from hdrive_mbs.effects.magnetic_pull import MagneticPull as MagneticPull
 from hdrive_mbs.effects.maxwell_slip_hysteresis import MaxwellSlipHysteresis as MaxwellSlipHysteresis
 from hdrive_mbs.effects.mesh_friction import MeshFriction as MeshFriction
 from hdrive_mbs.effects.mesh_presliding_friction import MeshPreslidingFriction as MeshPreslidingFriction
@@ -177,6 +180,7 @@ from hdrive_mbs.effects.sensor_lag import SensorLag as SensorLag
 from hdrive_mbs.effects.sensor_offset import SensorOffset as SensorOffset
 from hdrive_mbs.effects.sensor_quantisation import SensorQuantisation as SensorQuantisation
 from hdrive_mbs.effects.series_compliance import SeriesCompliance as SeriesCompliance
+from hdrive_mbs.effects.series_effect import SeriesEffect as SeriesEffect
 from hdrive_mbs.effects.shaft_bow import ShaftBow as ShaftBow
 from hdrive_mbs.effects.shaft_kink import ShaftKink as ShaftKink
 from hdrive_mbs.effects.shaft_stiffness_asymmetry import ShaftStiffnessAsymmetry as ShaftStiffnessAsymmetry

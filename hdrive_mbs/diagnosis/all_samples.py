@@ -28,6 +28,8 @@ EXACT = 1e-6
 RIVAL = 25.0
 """Log-likelihood behind the best within which another label is fitted as far as it: what so little tells apart has to be fitted alike."""
 
+CANNOT_RUN = "The nominal scene cannot be simulated through all of the records; look at its start values and inputs."
+
 
 @dataclass(frozen=True, eq=False)
 class Last:
@@ -57,7 +59,7 @@ def on_all_samples(
     work: list[Work] = [partial(as_given, nominal=null.hypothesis), *(partial(run_task, task=task) for task in tasks)]
     nominal, refitted, *others = team.map(_done, fine, work, said)
     if nominal is None or refitted is None:
-        raise AnalysisError("The nominal scene cannot be simulated through all of the records; look at its start values and inputs.")
+        raise AnalysisError(CANNOT_RUN)
     return Last(nominal, refitted, tuple(others), place or located(fine, refitted))
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from hdrive_mbs.diagnosis.all_samples import as_given, on_all_samples
+from hdrive_mbs.diagnosis.all_samples import CANNOT_RUN, as_given, on_all_samples
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import enough, leaves
@@ -24,6 +24,7 @@ from hdrive_mbs.diagnosis.tasks import Found, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import left
+from hdrive_mbs.errors import AnalysisError
 
 LEFT = 1.1
 """Mean square left by the best single cause, on what its fit saw and did not see, above which a second one is looked for; more beside a
@@ -84,14 +85,15 @@ def _begun(team: Team, coarse: Simulator, fine: Simulator, factors: Sequence[Fac
         [null] = team.map(fit_nominal, coarse, [tuple(factors)])
         return null, None
     done = partial(said, "fitting the nominal model, looking where the gap lies")
-    null, place = team.map(_begin, (coarse, fine, tuple(factors)), [_refitted, _placed], done)
+    work: list[Beginning] = [partial(_refitted, factors=tuple(factors)), partial(_placed, factors=tuple(factors))]
+    null, place = team.map(_begin, (coarse, fine), work, done)
     return null, place
 
 
-Beginning = Callable[[Simulator, Simulator, Sequence[Factor]], Any]
+Beginning = Callable[[Simulator, Simulator], Any]
 
 
-def _begin(shared: tuple[Simulator, Simulator, Sequence[Factor]], work: Beginning) -> Any:
+def _begin(shared: tuple[Simulator, Simulator], work: Beginning) -> Any:
     return work(*shared)
 
 
@@ -99,9 +101,11 @@ def _refitted(coarse: Simulator, fine: Simulator, factors: Sequence[Factor]) -> 
     return fit_nominal(coarse, factors)
 
 
-def _placed(coarse: Simulator, fine: Simulator, factors: Sequence[Factor]) -> Located | None:
+def _placed(coarse: Simulator, fine: Simulator, factors: Sequence[Factor]) -> Located:
     nominal = as_given(fine, Hypothesis(factors=tuple(factors)))
-    return None if nominal is None else located(fine, nominal)
+    if nominal is None:
+        raise AnalysisError(CANNOT_RUN)
+    return located(fine, nominal)
 
 
 def _there(

@@ -52,6 +52,8 @@ class Journal:
             return digest("simulator", shared.step, shared.every)
         if isinstance(shared, Screen):
             return digest("screen", self.identity(shared.simulator), shared.null.hypothesis, shared.null.z)
+        if isinstance(shared, tuple):
+            return digest("together", *(self.identity(item) for item in shared))
         return digest(shared)
 
     def key(self, function: Callable[..., Any], shared: str, item: Any) -> str:

@@ -19,7 +19,7 @@ class Creep(SeriesEffect):
 
     as for SeriesCompliance, with a time t that a record shows.  With a spring k as the connection it is the standard linear solid:
     stiffness k when fast, k/(1 + k C) when slow, a step of twist relaxes with the time t/(1 + k C), a step of torque creeps with the
-    time t, and most is lost in a cycle at the frequency sqrt(1 + k C)/t.
+    time t, and the loss factor is largest at the angular frequency sqrt(1 + k C)/t.
 
     Source: Zener's solid in its Voigt form, Lakes, Viscoelastic Materials, Cambridge 2009, ch. 2.  Leaves out a spread of times (put
     several Creep effects at the connection), amplitude (Payne) and temperature.
@@ -31,8 +31,8 @@ class Creep(SeriesEffect):
     family: ClassVar[str] = "creep"
     starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"creep_time": (0.05, 0.5)}
     signature: ClassVar[str] = (
-        "twist that goes on growing under a steady torque and comes back when it is gone; stiffer when fast, damping that is largest at one"
-        " low frequency"
+        "twist that goes on growing under a steady torque and comes back when it is gone; stiffer when fast, most damped at one low"
+        " frequency"
     )
 
     def at_rest(self) -> bool:

@@ -23,14 +23,15 @@ class JointSlip(SeriesEffect):
     at twice the torque T_s: a large one holds the torque at T_s like a safety clutch, a small one lets it creep on.  r = 0 never slips.
 
     Source: Bingham's body in line with the connection (viscoplastic flow beyond a yield stress), Perzyna, Advances in Applied Mechanics 9
-    (1966) 243.  Leaves out wear, static above sliding friction, and what heat does.  The state settles within
-    T_s/(r k) behind a spring k: a solver with fixed steps needs shorter ones.
+    (1966) 243.  Leaves out wear, static above sliding friction, and what heat does.  Behind a spring k the state settles with the time
+    constant T_s/(r k) + d/k: a solver with fixed steps needs shorter ones.  One at a connection; other elements in line sit inside it.
     """
 
     slip_torque: float = parameter("N m", "T_s above which it slips", above=0.0, high=1e6, typical=(0.3, 300.0))
     slip_rate: float = parameter("rad/s", "r at twice that torque", low=0.0, high=1e4, typical=(1e-6, 1.0))
 
     acts_on: ClassVar[str] = "coupling"
+    yields: ClassVar[bool] = True
     family: ClassVar[str] = "joint_slip"
     starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"slip_torque": (0.5, 3.0, 20.0, 80.0, 160.0)}
     decisive: ClassVar[tuple[str, ...]] = ("slip_torque",)

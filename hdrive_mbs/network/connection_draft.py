@@ -21,9 +21,10 @@ class ConnectionDraft:
     """A connection that effects may still change.
 
     ``law(moment, stretch, rate)`` is the constitutive law; ``parallel`` holds torques that act
-    beside it; ``series`` holds elements in line with both, from the inside out; ``terms`` are kinematic errors that add to
-    the stretch; ``bodies`` names the body at each flange.  ``gap`` is the full width about zero in
-    which the law has no elastic torque, 0 where it has none or nobody knows.
+    beside it; ``series`` holds elements in line with both, from the inside out, and ``yielding`` one
+    more outside them, which may have a corner; ``terms`` are kinematic errors that add to the stretch;
+    ``bodies`` names the body at each flange.  ``gap`` is the full width about zero in which the law has
+    no elastic torque, 0 where it has none or nobody knows.
     """
 
     name: str
@@ -34,6 +35,7 @@ class ConnectionDraft:
     bodies: dict[str, str] = field(default_factory=dict)
     claims: list[Claim] = field(default_factory=list)
     series: list[Series] = field(default_factory=list)
+    yielding: Series | None = None
     gap: float = 0.0
 
     def wrap(self, change: Callable[[Torque], Torque]) -> None:
@@ -56,21 +58,41 @@ class ConnectionDraft:
             torque = torque + extra(moment, stretch, rate)
         return torque
 
+    @property
+    def in_line(self) -> list[Series]:
+        """All elements in line, from the inside out."""
+        return self.series if self.yielding is None else [*self.series, self.yielding]
+
     def through(self, count: int) -> Torque:
         """Torque through the law, what acts beside it, and the innermost ``count`` elements in line with it."""
         if count == 0:
             return self.inner
         return lambda moment, stretch, rate: self.series[count - 1](moment, stretch, rate)[2]
 
-    def inside(self, moment: Moment, count: int = 0) -> tuple[Value, Value]:
-        """Stretch and rate over the law and the innermost ``count`` elements: the whole less what sits further out."""
+    def inside_yielding(self, moment: Moment, stretch: Value, rate: Value) -> Value:
+        """Torque through everything inside the element that yields, whatever comes to sit there."""
+        return self.through(len(self.series))(moment, stretch, rate)
+
+    def reaching(self, moment: Moment, element: Series | None = None) -> tuple[Value, Value]:
+        """Stretch and rate over an element in line and all inside it, or over the law alone: the whole less what sits further out."""
         whole = self.build()
         stretch, rate = whole.stretch(moment), whole.rate(moment)
-        for outer in reversed(self.series[count:]):
+        for outer in reversed(self.in_line):
+            if outer is element:
+                break
             deflection, its_rate, _ = outer(moment, stretch, rate)
             stretch, rate = stretch - deflection, rate - its_rate
         return stretch, rate
 
+    def inside(self, moment: Moment) -> tuple[Value, Value]:
+        """Stretch and rate that the law sees."""
+        return self.reaching(moment)
+
     def build(self) -> Connection:
-        torque = self.through(len(self.series)) if self.series or self.parallel else self.law
+        torque = self.law if not self.parallel else self.inner
+        if self.in_line:
+            torque = self._torque
         return Connection(self.name, dict(self.factors), torque, tuple(self.terms), parts=tuple(self.claims), flanges=dict(self.bodies))
+
+    def _torque(self, moment: Moment, stretch: Value, rate: Value) -> Value:
+        return self.in_line[-1](moment, stretch, rate)[2]

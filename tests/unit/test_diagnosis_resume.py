@@ -17,6 +17,8 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
+from hdrive_mbs.diagnosis import gather
+from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.digest import digest
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.journal import Journal
@@ -25,7 +27,9 @@ from hdrive_mbs.diagnosis.located import Located
 from hdrive_mbs.diagnosis.packing import packed, unpacked
 from hdrive_mbs.diagnosis.result import Diagnosis, Place
 from hdrive_mbs.diagnosis.screening import Look, Screen
+from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.team import Team
+from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.effects.viscous_drag import ViscousDrag
@@ -342,3 +346,38 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
 def test_inputs_that_made_a_folder_are_said_in_it(tmp_path: Path) -> None:
     journal = Journal(tmp_path, {"records": quiet()})
     assert set(json.loads((journal.folder / "inputs.json").read_text())) == {"records", "program"}
+
+
+def test_what_simulators_keep_of_runs_is_not_in_the_name_of_an_answer(tmp_path: Path) -> None:
+    """The first fit and the place of a rotor's gap are found from two simulators together."""
+    simulators = tuple(Simulator(diagnosis_trials(), 1e-3, every) for every in (4, 1))
+    journal = Journal(tmp_path, {"inputs": 1})
+    before = journal.identity(simulators)
+    nominal = Hypothesis(factors=factors_of(bench()))
+    assert simulators[0].residuals(nominal, [np.zeros(nominal.size)])[0] is not None
+    assert journal.identity(simulators) == before
+    assert journal.identity(simulators[::-1]) != before
+
+
+def diagnosis_trials() -> list[Trial]:
+    known = bench()
+    return [trial for record in quiet() for trial in known.trials(record)]
+
+
+def test_the_first_fit_and_the_place_that_are_found_side_by_side_are_taken_from_the_journal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(gather, "bends", lambda fine: True)
+    coarse, fine = (Simulator(diagnosis_trials(), 1e-3, every) for every in (4, 1))
+    found = []
+    for _ in range(2):
+        journal = Journal(tmp_path, {"inputs": 1})
+        with Team(1, journal) as team:
+            found.append(gather._begun(team, coarse, fine, factors_of(bench()), lambda *said: None))
+    assert journal.taken == 2
+    (first, place), (again, place_again) = found
+    np.testing.assert_array_equal(first.z, again.z)
+    assert place is not None
+    assert place_again is not None
+    assert place.places == place_again.places
+    assert place.doubt == place_again.doubt

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 import scipy.linalg
+import scipy.optimize
 from scipy.integrate import solve_ivp
 
 import hdrive_mbs as hm
@@ -525,7 +526,7 @@ def test_a_creeping_spring_is_the_standard_linear_solid() -> None:
     np.testing.assert_allclose(response["shaft.torque"].values, torque, rtol=1e-5)
 
 
-def test_a_creeping_spring_takes_most_at_the_frequency_of_its_text() -> None:
+def test_the_loss_factor_of_a_creeping_spring_is_largest_at_the_frequency_of_its_text() -> None:
     # complex stiffness k (1 + i w t)/(1 + k C + i w t): its phase is largest at w t = sqrt(1 + k C), with tan = k C/(2 sqrt(1 + k C))
     stiffness, compliance, time = 1e3, 3e-3, 0.05
     lag = []
@@ -555,6 +556,55 @@ def test_a_joint_under_a_steady_torque_slips_at_its_rate_and_keeps_the_twist() -
     assert abs(slipped[1] - slipped[0]) == pytest.approx(0.4 * rate, rel=1e-6)
     assert slipped[3] == pytest.approx(slipped[2], abs=1e-12)  # 4 N m hold
     assert hm.energy_balance(response).energy_error < 1e-6
+
+
+def slipping_and_creeping(*kinds: str, damping: float = 5.0) -> hm.Response:
+    effects = {"slip": hm.JointSlip(slip_torque=8.0, slip_rate=10.0), "creep": hm.Creep(compliance=5e-4, creep_time=0.05)}
+    disc = hm.Motor(inertia=0.1, viscous=1.0, characteristic=lambda time, speed: 14.0 * np.sin(60.0 * time) + 0.0 * speed)
+    parts = {"shaft": hm.Shaft(stiffness=1e3, damping=damping), "disc": disc}
+    scene = hm.Scene(name="line", parts=parts, connections=[("disc", "shaft", "ground")])
+    for kind in kinds:
+        scene = scene.with_effect(effects[kind], at="shaft", name=kind)
+    return hm.simulate(scene, 0.5, solver=TIGHT)
+
+
+def test_elements_in_line_commute_as_massless_ones_do() -> None:
+    one, other = slipping_and_creeping("slip", "creep"), slipping_and_creeping("creep", "slip")
+    assert np.max(np.abs(one["slip.deflection"].values)) > 1e-3  # it does slip
+    times = np.linspace(0.0, 0.5, 201)
+    for channel in ("shaft.torque", "slip.deflection", "creep.deflection"):
+        scale = np.max(np.abs(one[channel].values))
+        np.testing.assert_allclose(one.at(channel, times), other.at(channel, times), rtol=0.0, atol=1e-6 * scale)
+
+
+def test_a_joint_that_slips_beyond_a_creeping_spring_follows_equations_solved_for_the_torque() -> None:
+    # tau = k (x - y - s) + d (v - y' - s'),  y' = (C tau - y)/t,  s' = r max(|tau| - T_s, 0) sign(tau)/T_s: a root of tau at every instant
+    k, d, c, t, yield_, r = 1e3, 5.0, 5e-4, 0.05, 8.0, 10.0
+
+    def torque(x: float, v: float, y: float, s: float) -> float:
+        def left(tau: float) -> float:
+            slip = r * math.copysign(max(abs(tau) - yield_, 0.0), tau) / yield_
+            return k * (x - y - s) + d * (v - (c * tau - y) / t - slip) - tau
+
+        return float(scipy.optimize.brentq(left, -1e6, 1e6, xtol=1e-13, rtol=1e-14))
+
+    def motion(time: float, q: np.ndarray) -> list[float]:
+        x, v, y, s = q
+        tau = torque(x, v, y, s)
+        slip = r * math.copysign(max(abs(tau) - yield_, 0.0), tau) / yield_
+        return [v, (14.0 * math.sin(60.0 * time) - v - tau) / 0.1, (c * tau - y) / t, slip]
+
+    response = slipping_and_creeping("slip", "creep")
+    times = np.linspace(0.0, 0.5, 51)
+    wanted = solve_ivp(motion, (0.0, 0.5), [0.0] * 4, t_eval=times, rtol=1e-9, atol=1e-12, max_step=1e-3).y
+    for row, channel in enumerate(("disc.angle", "disc.speed", "creep.deflection", "slip.deflection")):
+        np.testing.assert_allclose(response.at(channel, times), wanted[row], rtol=0.0, atol=1e-6 * np.max(np.abs(wanted[row])))
+
+
+def test_a_second_joint_that_yields_in_line_is_refused() -> None:
+    scene = spring_to_ground().with_effect(hm.JointSlip(slip_torque=8.0, slip_rate=0.2), at="shaft")
+    with pytest.raises(PlaceError, match="yields in line with that connection already"):
+        scene.with_effect(hm.JointSlip(slip_torque=5.0, slip_rate=0.2), at="shaft", name="other").network()
 
 
 def test_a_joint_that_slips_fast_is_a_safety_clutch() -> None:

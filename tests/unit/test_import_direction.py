@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+import hdrive_mbs
+
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "hdrive_mbs"
 
@@ -140,3 +142,10 @@ def test_heavy_packages_are_imported_where_they_are_used_and_not_at_the_top() ->
         top = module.split(".")[1] if "." in module else ""
         if top not in ("analysis", "diagnosis", "plots", "cli", "engine", "teeth"):
             assert not slow & set(imports(path, at_top=True)), module
+
+
+def test_type_checkers_and_editors_know_every_name_that_the_package_offers() -> None:
+    stub = ast.parse((PACKAGE / "__init__.pyi").read_text(encoding="utf-8"))
+    imported = {(node.module, alias.asname) for node in stub.body if isinstance(node, ast.ImportFrom) for alias in node.names}
+    offered = {(f"hdrive_mbs.{module}", name) for name, module in hdrive_mbs._MODULE_OF.items()}
+    assert imported == offered
