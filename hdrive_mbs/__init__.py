@@ -144,6 +144,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.series_compliance": ("SeriesCompliance",),
     "effects.series_effect": ("SeriesEffect",),
     "effects.creep": ("Creep",),
+    "effects.loose_bolt": ("LooseBolt",),
     "effects.magnetic_pull": ("MagneticPull",),
     "effects.joint_slip": ("JointSlip",),
     "effects.stiffness_asymmetry": ("StiffnessAsymmetry",),

@@ -145,6 +145,7 @@ from hdrive_mbs.effects.joint_slip import JointSlip as JointSlip
 from hdrive_mbs.effects.kinematic_error import KinematicError as KinematicError
 from hdrive_mbs.effects.lateral_effect import LateralEffect as LateralEffect
 from hdrive_mbs.effects.loaded_misalignment import LoadedMisalignment as LoadedMisalignment
+from hdrive_mbs.effects.loose_bolt import LooseBolt as LooseBolt
 from hdrive_mbs.effects.loose_fit import LooseFit as LooseFit
 from hdrive_mbs.effects.looseness import Looseness as Looseness
 from hdrive_mbs.effects.lost_motion import LostMotion as LostMotion

@@ -65,6 +65,7 @@ EXAMPLES = {
         Example(hm.BearingStiffnessChange(change=0.3), "left", ("change",)),
         Example(hm.BearingDampingChange(change=0.8), "left", ("change",)),
         Example(hm.Looseness(share=0.6, lift_off=-2e-5, play=3e-5), "left", ("share",)),
+        Example(hm.LooseBolt(share=0.6, lift_off=-2e-5, play=3e-5), "left", ("share",)),
         Example(hm.LooseFit(share=0.6, half_play=5e-6, direction="both"), "left", ("share",)),
         Example(hm.SupportStiffnessChange(change=0.3), "left", ("change",)),
         Example(hm.SupportDampingChange(change=0.8), "left", ("change",)),

@@ -448,9 +448,10 @@ def slid(y: float, low: float, high: float) -> float:
     [
         (hm.Looseness(share=0.7, lift_off=-5e-6), -5e-6, math.inf, "y"),
         (hm.Looseness(share=0.7, lift_off=-5e-6, play=1e-5), -5e-6, 5e-6, "y"),
+        (hm.LooseBolt(share=0.7, lift_off=-5e-6, play=1e-5), -5e-6, 5e-6, "y"),
         (hm.LooseFit(share=0.7, half_play=8e-6), -8e-6, 8e-6, "x"),
     ],
-    ids=["lifts", "lifts to the bolt", "sideways"],
+    ids=["lifts", "lifts to the bolt", "loose bolt", "sideways"],
 )
 def test_disc_on_a_loose_support_moves_as_scipy_says(effect: Effect, low: float, high: float, direction: str) -> None:
     """Disc and housing; the foundation pulls with k (y - a (b - b_0)), b being y between the corners.  Dropped in both directions."""

@@ -187,6 +187,7 @@ ROTOR_EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.BearingStiffnessChange(change=0.1), "bearing"),
     (hm.BearingDampingChange(change=0.1), "bearing"),
     (hm.Looseness(share=0.3, lift_off=-1e-6, play=1e-5), "bearing"),
+    (hm.LooseBolt(share=0.3, play=3e-6), "bearing"),
     (hm.LooseFit(share=0.3, half_play=1e-6), "bearing"),
     (hm.SupportStiffnessChange(change=0.1), "bearing"),
     (hm.SupportDampingChange(change=0.1, direction="y"), "bearing"),
