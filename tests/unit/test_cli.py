@@ -121,7 +121,7 @@ def test_json_to_stdout_is_nothing_but_json() -> None:
         (("run", TRAIN, "--solver", "euler"), ("euler", "dormand-prince")),
         (("run", TRAIN, "--solver", "runge-kutta-4", "--step", "1e-3"), ("beyond its limit of stability", "shorter step")),
         (("run", TRAIN, "--duration", "0.01", "--out", f"{TRAIN}/under/a/file"), ("Cannot write", "Choose a folder")),
-        (("run", TRAIN, "--effect", "Magic@motor"), ("Magic", "CoulombStribeckFriction")),
+        (("run", TRAIN, "--effect", "Witchcraft@motor"), ("Witchcraft", "CoulombStribeckFriction")),
         (("run", TRAIN, "--effect", "ViscousDrag@gear.mesh:coefficient=1"), ("gear.mesh", "motor")),
         (("torsion", TRAIN, "--torques", "1,two"), ("--torques", "commas")),
         (("torsion", TRAIN, "--at", "gaer"), ("gaer", "gear")),
