@@ -33,7 +33,7 @@ class JointSlip(SeriesEffect):
     acts_on: ClassVar[str] = "coupling"
     yields: ClassVar[bool] = True
     family: ClassVar[str] = "joint_slip"
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"slip_torque": (0.5, 3.0, 20.0, 80.0, 160.0)}
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"slip_torque": (0.5, 3.0, 15.0, 60.0, 200.0)}
     decisive: ClassVar[tuple[str, ...]] = ("slip_torque",)
     signature: ClassVar[str] = "twist that jumps on at peaks of torque and does not come back, while the torque itself returns"
 
