@@ -6,37 +6,29 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hdrive_mbs.effects.series_effect import SeriesEffect
-from hdrive_mbs.expression import Value
+from hdrive_mbs.effects.series_compliance import SeriesCompliance
 from hdrive_mbs.quantities import parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class Creep(SeriesEffect):
+class Creep(SeriesCompliance):
     """Twist that comes after the torque, and goes after it again: a connection that is softer when slow.
 
     tau = (y + t dy/dt)/C,  dy/dt = (C T(x - y, v) - y)/(t + C d)
 
-    as for SeriesCompliance, with a time t that a record shows.  With a spring k as the connection it is the standard linear solid:
-    stiffness k when fast, k/(1 + k C) when slow, a step of twist relaxes with the time t/(1 + k C), a step of torque creeps with the
-    time t, and the loss factor is largest at the angular frequency sqrt(1 + k C)/t.
+    the law of SeriesCompliance with a time t that a record shows and a search moves.  With a spring k as the connection it is the
+    standard linear solid: stiffness k when fast, k/(1 + k C) when slow, a step of twist relaxes with the time t/(1 + k C), a step of
+    torque creeps with the time t, and the loss factor is largest at the angular frequency sqrt(1 + k C)/t.
 
     Source: Zener's solid in its Voigt form, Lakes, Viscoelastic Materials, Cambridge 2009, ch. 2.  Leaves out a spread of times (put
     several Creep effects at the connection), amplitude (Payne) and temperature.
     """
 
-    compliance: float = parameter("rad/(N m)", "C, what comes late", low=0.0, high=10.0, typical=(1e-7, 1e-2))
-    creep_time: float = parameter("s", "t in which it comes", default=0.1, above=0.0, high=1e6, typical=(4e-3, 10.0))
+    relaxation_time: float = parameter("s", "t in which the twist comes", default=0.1, above=0.0, high=1e6, typical=(4e-3, 10.0))
 
     family: ClassVar[str] = "creep"
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"creep_time": (0.05, 0.5)}
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"relaxation_time": (0.05, 0.5)}
     signature: ClassVar[str] = (
         "twist that goes on growing under a steady torque and comes back when it is gone; stiffer when fast, most damped at one low"
         " frequency"
     )
-
-    def at_rest(self) -> bool:
-        return self.compliance == 0.0
-
-    def deflection_rate(self, deflection: Value, torque: Value, damping: Value) -> Value:
-        return (self.compliance * torque - deflection) / (self.creep_time + self.compliance * damping)

@@ -217,7 +217,7 @@ EXAMPLES = {
         Example(HiddenMode(inertia=0.2, natural_frequency=150.0, damping_ratio=0.3), "load", ("inertia",)),
         Example(FlexibleInertia(share=0.3, natural_frequency=150.0, damping_ratio=0.3), "load", ("share",)),
         Example(SeriesCompliance(compliance=2e-5), "gear", ("compliance",)),
-        Example(Creep(compliance=2e-5, creep_time=5e-3), "gear", ("compliance",)),
+        Example(Creep(compliance=2e-5, relaxation_time=5e-3), "gear", ("compliance",)),
         Example(JointSlip(slip_torque=0.02, slip_rate=0.5), "coupling", ("slip_rate",)),
         Example(ThermalDrift(viscous_change=5.0, friction_change=-3.0, time_constant=0.05), "load", ("viscous_change", "friction_change")),
         Example(SensorGain(error=0.1), "torque_sensor", ("error",)),

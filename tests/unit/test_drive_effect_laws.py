@@ -501,7 +501,9 @@ def test_two_compliances_in_line_are_three_springs_one_behind_the_other() -> Non
     chain = ((4e-4, 0.02), (7e-4, 0.3))
     scene = spring_to_ground(stiffness, damping, 1e9)  # a disc that nothing turns
     for k, (compliance, time) in enumerate(chain):
-        kind = hm.Creep(compliance=compliance, creep_time=time) if k else hm.SeriesCompliance(compliance=compliance, relaxation_time=time)
+        kind = (
+            hm.Creep(compliance=compliance, relaxation_time=time) if k else hm.SeriesCompliance(compliance=compliance, relaxation_time=time)
+        )
         scene = scene.with_effect(kind, at="shaft", name=f"element_{k}")
     held = 0.01
     response = hm.simulate(scene, 1.0, solver=TIGHT, initial={"disc.angle": held})
@@ -513,12 +515,12 @@ def test_two_compliances_in_line_are_three_springs_one_behind_the_other() -> Non
     times = np.linspace(0.0, 1.0, 21)
     wanted = np.array([end - scipy.linalg.expm(matrix * t) @ end for t in times])
     for k in range(2):
-        np.testing.assert_allclose(response.at(f"element_{k}.deflection", times), wanted[:, k], atol=1e-5 * held)
+        np.testing.assert_allclose(response.at(f"element_{k}.deflection", times), wanted[:, k], rtol=0.0, atol=1e-6 * held)
 
 
 def test_a_creeping_spring_is_the_standard_linear_solid() -> None:
     stiffness, compliance, time, held = 1e3, 1e-3, 0.2, 0.01
-    scene = spring_to_ground(stiffness, 0.0, 1e9).with_effect(hm.Creep(compliance=compliance, creep_time=time), at="shaft", name="it")
+    scene = spring_to_ground(stiffness, 0.0, 1e9).with_effect(hm.Creep(compliance=compliance, relaxation_time=time), at="shaft", name="it")
     response = hm.simulate(scene, 1.0, solver=TIGHT, initial={"disc.angle": held})
     slow = stiffness / (1.0 + stiffness * compliance)
     torque = held * (slow + (stiffness - slow) * np.exp(-response.times * (1.0 + stiffness * compliance) / time))
@@ -535,7 +537,7 @@ def test_the_loss_factor_of_a_creeping_spring_is_largest_at_the_frequency_of_its
         motor = hm.Motor(inertia=1e-3, viscous=1.0, characteristic=lambda time, speed, w=omega: np.sin(w * time) + 0.0 * speed)
         parts = {"motor": motor, "shaft": hm.Shaft(stiffness=stiffness)}
         scene = hm.Scene(name="shaken", parts=parts, connections=[("motor", "shaft", "ground")])
-        scene = scene.with_effect(hm.Creep(compliance=compliance, creep_time=time), at="shaft")
+        scene = scene.with_effect(hm.Creep(compliance=compliance, relaxation_time=time), at="shaft")
         response = hm.simulate(scene, 12 * 2 * math.pi / omega, solver=TIGHT)
         times = np.linspace(10 * 2 * math.pi / omega, 12 * 2 * math.pi / omega, 400, endpoint=False)
         wave = np.exp(-1j * omega * times)
@@ -559,7 +561,7 @@ def test_a_joint_under_a_steady_torque_slips_at_its_rate_and_keeps_the_twist() -
 
 
 def slipping_and_creeping(*kinds: str, damping: float = 5.0) -> hm.Response:
-    effects = {"slip": hm.JointSlip(slip_torque=8.0, slip_rate=10.0), "creep": hm.Creep(compliance=5e-4, creep_time=0.05)}
+    effects = {"slip": hm.JointSlip(slip_torque=8.0, slip_rate=10.0), "creep": hm.Creep(compliance=5e-4, relaxation_time=0.05)}
     disc = hm.Motor(inertia=0.1, viscous=1.0, characteristic=lambda time, speed: 14.0 * np.sin(60.0 * time) + 0.0 * speed)
     parts = {"shaft": hm.Shaft(stiffness=1e3, damping=damping), "disc": disc}
     scene = hm.Scene(name="line", parts=parts, connections=[("disc", "shaft", "ground")])
@@ -613,11 +615,11 @@ def test_a_joint_that_slips_fast_is_a_safety_clutch() -> None:
     scene = hm.Scene(name="clutch", parts=parts, connections=[("disc", "shaft", "ground")])
     scene = scene.with_effect(hm.JointSlip(slip_torque=8.0, slip_rate=1e4), at="shaft", name="it")
     response = hm.simulate(scene, 0.3, solver=TIGHT)
-    # the clutch carries T_s (1 + w/r): the disc gains (20 - 8 - 8 w/r)/J
-    late = response.times > 0.1
-    assert np.max(np.abs(response["shaft.torque"].values[late])) == pytest.approx(8.0, rel=0.005)
-    speed = np.abs(response.at("disc.speed", np.array([0.1, 0.3])))
-    assert speed[1] - speed[0] == pytest.approx(0.2 * 12.0 / 0.1, rel=0.002)
+    # the clutch carries T_s (1 + w/r), so J w' = 20 - 8 - 8 w/r, of which 15,000 rad/s would be the end
+    speed = response.at("disc.speed", np.array([0.1, 0.3]))
+    end = 12.0 * 1e4 / 8.0
+    assert speed[1] == pytest.approx(end + (speed[0] - end) * math.exp(-8.0 * 0.2 / (1e4 * 0.1)), rel=1e-5)
+    assert response["shaft.torque"].values[-1] == pytest.approx(8.0 * (1.0 + speed[1] / 1e4), rel=1e-5)
 
 
 # -- time ----------------------------------------------------------------------------------------------------------

@@ -356,7 +356,7 @@ def test_a_motor_follows_a_ramp_late_by_its_lag_with_steps_of_half_a_sample(effe
         *((hm.SensorLag(time_constant=t), "load_encoder") for t in (5e-5, 0.05)),
         *((hm.SensorDelay(delay=t), "load_encoder") for t in (5e-5, 0.02)),
         *((hm.SeriesCompliance(compliance=c), at) for c in (1e-7, 1e-2) for at in ("input_shaft", "gear", "output_shaft")),
-        *((hm.Creep(compliance=c, creep_time=4e-3), at) for c in (1e-7, 1e-2) for at in ("input_shaft", "gear", "output_shaft")),
+        *((hm.Creep(compliance=c, relaxation_time=4e-3), at) for c in (1e-7, 1e-2) for at in ("input_shaft", "gear", "output_shaft")),
         *((hm.JointSlip(slip_torque=t, slip_rate=1.0), at) for t in (0.3, 300.0) for at in ("input_shaft", "output_shaft")),
         *((hm.FlexibleInertia(share=s, natural_frequency=f), "load") for s in (0.02, 0.7) for f in (20.0, 3e3)),
         *((hm.PreslidingFriction(coulomb=0.3, presliding=x), "wave_generator") for x in (1e-4, 0.1)),

@@ -138,7 +138,7 @@ EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.HiddenMode(inertia=0.1, natural_frequency=100.0), "load"),
     (hm.FlexibleInertia(share=0.2, natural_frequency=100.0), "load"),
     (hm.SeriesCompliance(compliance=1e-5), "output_shaft"),
-    (hm.Creep(compliance=1e-5, creep_time=0.3), "output_shaft"),
+    (hm.Creep(compliance=1e-5, relaxation_time=0.3), "output_shaft"),
     (hm.JointSlip(slip_torque=80.0, slip_rate=1e-3), "output_shaft"),
     (hm.ThermalDrift(viscous_change=-0.1, time_constant=10.0), "load"),
     (hm.PreslidingFriction(coulomb=1.0, presliding=1e-3, drop=0.3), "load"),
