@@ -18,7 +18,8 @@ class Creep(SeriesCompliance):
 
     the law of SeriesCompliance with a time t that a record shows and a search moves.  With a spring k as the connection it is the
     standard linear solid: stiffness k when fast, k/(1 + k C) when slow, a step of twist relaxes with the time t/(1 + k C), a step of
-    torque creeps with the time t, and the loss factor is largest at the angular frequency sqrt(1 + k C)/t.
+    torque creeps with the time t, and the loss factor is largest at the angular frequency sqrt(1 + k C)/t.  The connection's own stiffness
+    is the fast one: where a data sheet gives the slow one, a fit moves it up by the factor 1 + k C.
 
     Source: Zener's solid in its Voigt form, Lakes, Viscoelastic Materials, Cambridge 2009, ch. 2.  Leaves out a spread of times (put
     several Creep effects at the connection), amplitude (Payne) and temperature.
