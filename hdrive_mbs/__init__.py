@@ -174,6 +174,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.phased_crack": ("PhasedCrack",),
     "effects.whole_shaft_effect": ("WholeShaftEffect",),
     "effects.internal_damping": ("InternalDamping",),
+    "effects.relaxing_damping": ("RelaxingDamping",),
     "effects.shaft_stiffness_asymmetry": ("ShaftStiffnessAsymmetry",),
     "effects.rub": ("Rub",),
     "effects.lateral_effect": ("LateralEffect",),

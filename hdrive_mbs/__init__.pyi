@@ -168,6 +168,7 @@ from hdrive_mbs.effects.probe_cross_talk import ProbeCrossTalk as ProbeCrossTalk
 from hdrive_mbs.effects.probe_gain import ProbeGain as ProbeGain
 from hdrive_mbs.effects.probe_runout import ProbeRunout as ProbeRunout
 from hdrive_mbs.effects.quadratic_drag import QuadraticDrag as QuadraticDrag
+from hdrive_mbs.effects.relaxing_damping import RelaxingDamping as RelaxingDamping
 from hdrive_mbs.effects.ripple_spectrum import RippleSpectrum as RippleSpectrum
 from hdrive_mbs.effects.rotor_unbalance import RotorUnbalance as RotorUnbalance
 from hdrive_mbs.effects.rub import Rub as Rub

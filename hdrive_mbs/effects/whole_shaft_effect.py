@@ -1,38 +1,25 @@
-"""The shape of effects that are a property of a whole shaft: the same law on each of its pieces."""
+"""The shape of laws over the bending of a whole shaft that know the moment alone."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
 
-from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.effects.every_piece_effect import EveryPieceEffect
 from hdrive_mbs.effects.shaft_bending import bent_shapes
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.bearing_draft import ShaftPiece
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
-from hdrive_mbs.network.network import Network
-from hdrive_mbs.quantities import option
 
 
 @dataclass(frozen=True, kw_only=True)
-class WholeShaftEffect(Effect):
+class WholeShaftEffect(EveryPieceEffect):
     """Forces along the shapes into which each piece of shaft bends, that turn with the shaft.
 
     Both planes together: a shape has a displacement s in x and t in y, and (s + i t) exp(-i phi) is what the shaft sees.
     """
-
-    alone: bool = option("whether it acts on the piece it is put at alone, not on all pieces of shaft", default=False)
-
-    acts_on: ClassVar[str] = "shaft"
-    kind: ClassVar[str] = "parametric"
-
-    @classmethod
-    def places(cls, network: Network) -> tuple[str, ...]:
-        """The first piece: it acts on all, wherever it is put."""
-        return network.members.get("shaft", ())[:1]
 
     @abstractmethod
     def pair(
@@ -40,12 +27,7 @@ class WholeShaftEffect(Effect):
     ) -> tuple[Value, Value, Value]:
         """Forces that resist s and t and the torque that resists the spin, of a shape with that bending stiffness."""
 
-    def apply(self, draft: Draft, place: str, name: str) -> None:
-        chosen = draft.shaft(place, type(self).__name__)
-        for piece in (chosen,) if self.alone else draft.shafts:
-            self._add(draft, piece, f"{name}.{piece.name}")
-
-    def _add(self, draft: Draft, piece: ShaftPiece, name: str) -> None:
+    def add_to(self, draft: Draft, piece: ShaftPiece, name: str) -> None:
         shapes = bent_shapes(piece)
         stretches = {f"{key}{k}": shape.stretches[key] for k, (shape, _) in enumerate(shapes) for key in "xy"}
         draft.add_coupling(

@@ -107,10 +107,12 @@ class Nodes:
     def copied(self, record: CoupledRecord) -> CoupledRecord:
         """The record over copies of a rotor's coordinates, where with the rotor's node itself it would be too wide.
 
-        A symbolic coupling takes six coordinates, and a rotor's node has six already.  Stretches of its own are made here.
+        A symbolic coupling takes six coordinates, and a rotor's node has six already.  Stretches of its own are made here,
+        once for all records that share them.
         """
         for name, factors in record.stretches.items():
-            self._follow(name, factors)
+            if name not in self.at:
+                self._follow(name, factors)
         if record.outputs is None:
             return record
         touched = set(record.targets).union(record.depends)

@@ -14,6 +14,7 @@ from hdrive_mbs.network.coupling import Coupling
 from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, StateRate
 from hdrive_mbs.network.moment import Moment, recording_moment
 from hdrive_mbs.network.network import Network
+from hdrive_mbs.network.stretch_rate import StretchRate
 
 ScalarLaw = Callable[[Value, Value, Value], Value]
 
@@ -131,7 +132,7 @@ def make_records(element: Element, network: Network, *, follow: bool = True) -> 
     if scalar is not None:
         return [scalar]
     coupled = _coupled(element, network)
-    return [_narrowed(element, coupled, network) if follow and isinstance(element, _Rest) else coupled]
+    return [_narrowed(element, coupled, network) if follow and isinstance(element, (_Rest, StretchRate)) else coupled]
 
 
 def _is_wide(coupled: CoupledRecord) -> bool:
@@ -139,15 +140,15 @@ def _is_wide(coupled: CoupledRecord) -> bool:
     return len({*coupled.targets, *coupled.depends}) > SYMBOLIC_VECTOR_LIMIT
 
 
-def _narrowed(part: _Rest, wide: CoupledRecord, network: Network) -> CoupledRecord:
+def _narrowed(part: _Rest | StretchRate, wide: CoupledRecord, network: Network) -> CoupledRecord:
     """The record over the stretches themselves where the law is too wide over their coordinates."""
     if wide.outputs is None or not _is_wide(wide):
         return wide
     given = {motion.name for motion in network.motions}
-    stretches = part.coupling.stretches
-    own = {key: f"{part.name}.{key}~" for key, factors in stretches.items() if len(factors) > 1 and not given & set(factors)}
+    stretches = part.stretches
+    own = {key: f"{part.of}.{key}~" for key, factors in stretches.items() if len(factors) > 1 and not given & set(factors)}
     over = {key: {own[key]: 1.0} if key in own else factors for key, factors in stretches.items()}
-    narrow = _coupled(_Rest(replace(part.coupling, stretches=over), part.directions), network, own.values())
+    narrow = _coupled(part.over(over), network, own.values())
     if narrow.outputs is None or _is_wide(narrow):
         return wide
     touched = {*narrow.targets, *narrow.depends}
@@ -192,6 +193,19 @@ class _Rest:
     @property
     def name(self) -> str:
         return self.coupling.name
+
+    @property
+    def of(self) -> str:
+        """Whose stretches they are."""
+        return self.coupling.name
+
+    @property
+    def stretches(self) -> Mapping[str, Mapping[str, float]]:
+        return self.coupling.stretches
+
+    def over(self, stretches: Mapping[str, Mapping[str, float]]) -> _Rest:
+        """The same with stretches of other coordinates."""
+        return _Rest(replace(self.coupling, stretches=stretches), self.directions)
 
     def contribution(self, moment: Moment) -> dict[str, Value]:
         if self.directions is None:

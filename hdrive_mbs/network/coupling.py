@@ -24,10 +24,12 @@ class Coupling:
     stretches: Mapping[str, Mapping[str, float]]
     forces: Forces
     dissipative: bool = False
+    stored: Callable[[Moment], Value] | None = None
+    """Energy [J] held in states: what a dissipative law may still give back."""
 
     def claims(self) -> tuple[Claim, ...]:
         """What the element promises."""
-        return (Claim(self.name, self.power),) if self.dissipative else ()
+        return (Claim(self.name, self.power, self.stored),) if self.dissipative else ()
 
     def along(self, values: Mapping[str, Value]) -> dict[str, Value]:
         """Stretches of coordinates, or their rates of speeds."""

@@ -9,13 +9,16 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.errors import PlaceError, SceneError
+from hdrive_mbs.expression import Value
 from hdrive_mbs.network.coupling import Coupling, Forces
 from hdrive_mbs.network.draft_torsion import DraftTorsion
 from hdrive_mbs.network.matrix_element import MatrixElement
+from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Body, Channel
 from hdrive_mbs.network.node import Node
 from hdrive_mbs.network.rigid_mass import RigidMass
 from hdrive_mbs.network.station import Station, coordinate_names
+from hdrive_mbs.network.stretch_rate import RateOver, stretch_rate
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -126,9 +129,21 @@ class DraftRotorLine(DraftTorsion):
         """Whether the station is a rigid body with all its couplings and free to turn."""
         return self._nodes[station.node].is_rotor and station.node not in self._motions
 
-    def add_coupling(self, name: str, stretches: dict[str, dict[str, float]], forces: Forces, *, dissipative: bool = False) -> None:
-        """Forces along several stretches that depend on each other, positive when they resist."""
-        self._elements.append(Coupling(name, stretches, forces, dissipative))
+    def add_coupling(
+        self,
+        name: str,
+        stretches: dict[str, dict[str, float]],
+        forces: Forces,
+        *,
+        dissipative: bool = False,
+        stored: Callable[[Moment], Value] | None = None,
+    ) -> None:
+        """Forces along several stretches that depend on each other, positive when they resist; energy [J] that their states hold."""
+        self._elements.append(Coupling(name, stretches, forces, dissipative, stored))
+
+    def add_stretch_state(self, name: str, of: str, stretches: Mapping[str, Mapping[str, float]], rate: RateOver, *, unit: str) -> str:
+        """A first-order state that begins at zero, dz/dt = rate(moment, stretches, their rates), of the coupling of that name."""
+        return self._with_state(name, unit, 0.0, lambda unique: stretch_rate(unique, of, stretches, rate))
 
     @property
     def gravity(self) -> tuple[float, float, float]:

@@ -126,11 +126,14 @@ class DraftTorsion(DraftChannels):
 
     def add_state(self, name: str, *, unit: str, initial: float, rate: Callable[[Moment], Value]) -> str:
         """A first-order state dz/dt = rate(moment); returns its (unique) name."""
+        return self._with_state(name, unit, initial, lambda unique: StateRate(unique, rate))
+
+    def _with_state(self, name: str, unit: str, initial: float, equation: Callable[[str], StateRate]) -> str:
         unique, number = name, 2
         while unique in self._states:
             unique, number = f"{name}_{number}", number + 1
         self._states[unique] = State(unique, unit, initial)
-        self._elements.append(StateRate(unique, rate))
+        self._elements.append(equation(unique))
         self.add_channel(unique, unit, f"state {unique}", lambda moment: moment.state(unique))
         return unique
 

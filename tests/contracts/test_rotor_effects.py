@@ -75,6 +75,7 @@ EXAMPLES = {
         Example(hm.MomentCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, closing_moment=3.0), "first", ("compliance",)),
         Example(hm.PhasedCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, phase=0.7), "first", ("compliance",)),
         Example(hm.InternalDamping(time=1e-3), "first", ("time",)),
+        Example(hm.RelaxingDamping(time=1e-3, relaxation_time=2e-3), "first", ("time",)),
         Example(hm.ShaftStiffnessAsymmetry(asymmetry=0.2, angle=0.4), "first", ("asymmetry",)),
         Example(
             hm.Rub(gap=1e-5, stiffness=1e5, friction=0.2, radius=0.05, centre_x=1e-5, centre_y=-5e-6, exponent=1.5), "disc", ("stiffness",)

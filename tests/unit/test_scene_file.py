@@ -197,6 +197,7 @@ ROTOR_EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.MomentCrack(compliance=1e-7, position=0.5, closing_moment=10.0), "shaft.element_2"),
     (hm.PhasedCrack(compliance=1e-7, position=0.5, phase=0.3), "shaft.element_2"),
     (hm.InternalDamping(time=1e-6), "shaft.element_1"),
+    (hm.RelaxingDamping(time=1e-6, relaxation_time=1e-3), "shaft.element_1"),
     (hm.ShaftStiffnessAsymmetry(asymmetry=0.01, angle=0.3), "shaft.element_1"),
     (hm.Rub(gap=1e-4, stiffness=1e6, friction=0.1, radius=0.05), "rotor"),
     (hm.DampedRub(gap=1e-4, stiffness=1e6, damping=100.0, friction=0.1, radius=0.05), "rotor"),

@@ -124,12 +124,20 @@ def test_effect_moves_the_bench_as_the_plant_does(case: str) -> None:
     assert measured(put, bare.with_effect(effect, at=at)) < 0.02  # what steps of fixed length leave at corners
 
 
-def test_internal_damping_moves_the_bench_as_the_plant_does() -> None:
-    """At standstill it is damping alone; the spin is in tests of the threshold."""
+LOSSES = {
+    "viscous": ((1, 1e-5), hm.InternalDamping(time=1e-5)),
+    "relaxing": ((2, 1e-5 / 8e-4, 8e-4), hm.RelaxingDamping(time=1e-5, relaxation_time=8e-4)),
+}
+
+
+@pytest.mark.parametrize("law", LOSSES)
+def test_internal_damping_moves_the_bench_as_the_plant_does(law: str) -> None:
+    """At standstill it is damping alone; the spin is in tests of the threshold and of the poles."""
+    row, effect = LOSSES[law]
 
     def put(bench: Planted) -> None:
-        bench.causes.internal[:2] = 1, 1e-5
+        bench.causes.internal[: len(row)] = row
 
     bare = rotor_bench.build("bump")
     assert measured(put, bare) > 3.0
-    assert measured(put, bare.with_effect(hm.InternalDamping(time=1e-5), at="section_1")) < 0.005
+    assert measured(put, bare.with_effect(effect, at="section_1")) < 0.005

@@ -101,6 +101,7 @@ class SpeedLine:
         """
         network = scene.network()
         lines = LineMatrices(network)
+        lines.check_memory()
         varying = lines.varying()
         knots = speeds if varying else np.unique(speeds[[0, -1]])
         points: list[RotorPoint] = []

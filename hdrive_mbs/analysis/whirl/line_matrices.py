@@ -71,7 +71,7 @@ class _Spinning:
 class LineMatrices:
     """The linearised line, built once and evaluated at many states.
 
-    First-order states (a servo's integral, a hysteresis) are held at their values.
+    First-order states (a servo's integral, a hysteresis) are held at their values; see ``check_memory``.
     """
 
     def __init__(self, network: Network) -> None:
@@ -87,6 +87,7 @@ class LineMatrices:
         self._spinning: list[_Spinning] = []
         self._slopes: list[_Slope] = []
         self._plain: list[Element] = []
+        self._remembering: dict[str, str] = {}  # elements whose forces across the axis depend on a first-order state -> that state
         for rotor in network.rotors:
             at = [self._index[name] for name in rotor.coordinates]
             sense = np.array([1.0] * 5 + [float(rotor.sense)])
@@ -133,6 +134,8 @@ class LineMatrices:
             recorded = record(force)
             for name in variables(recorded):
                 kind, _, owner = name.partition(":")
+                if kind == "state" and target in self._lateral:
+                    self._remembering.setdefault(element.name, owner)
                 if kind in _KINDS and owner in self._index and not (kind == "angle" and self._is_periodic(element, target, owner)):
                     self._add_slope(_Slope(element.name, self._index[target], self._index[owner], kind, derivative(recorded, name)))
 
@@ -210,6 +213,16 @@ class LineMatrices:
                         if not np.isfinite(change):
                             raise LawError(self._endless(element.name, target, kind.removesuffix("s"), name, moment))
                         matrix[self._index[target], column] -= change
+
+    def check_memory(self) -> None:
+        """Raise LawError where a lateral force depends on a first-order state, which moves with the whirl and is held here."""
+        for element, state in self._remembering.items():
+            raise LawError(
+                f"{element}: its force across the axis depends on the first-order state {state!r}, which M q'' + D q' + K q = 0 has no"
+                " place for, so that damping and frequencies would come out without it. Leave it out of the scene, put a law without"
+                " states in its place (for RelaxingDamping InternalDamping with the same time, where the whirl is slow in the turning"
+                " shaft), or simulate the line in time."
+            )
 
     def depends_on(self) -> frozenset[str] | None:
         """Variables of the state that slopes depend on (``speed:rotor``, ``angle:rotor.x``), the spins of gyroscopes and

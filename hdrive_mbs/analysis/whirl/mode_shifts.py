@@ -80,6 +80,7 @@ def lateral_roots(scene: Scene, speed: float, *, deflected: bool = True) -> Comp
     """Roots s of bending at a spin speed [rad/s] of the reference shaft, by frequency; axial and torsional motion held."""
     network = scene.network()
     lines = LineMatrices(network)
+    lines.check_memory()
     if deflected:
         point = rotor_point(scene, speed, lines=lines)
         system = lines.at(point.angles, point.speeds, point.states)

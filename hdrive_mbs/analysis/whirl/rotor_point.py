@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.analysis.operating_point import at_speed, operating_point
+from hdrive_mbs.analysis.whirl.following_states import FollowingStates
 from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.scene import Scene
@@ -18,6 +19,8 @@ _Vector = Callable[[FloatArray], FloatArray]
 
 TOLERANCE = 1e-10
 """Unbalanced force over the largest force involved at which the deflection counts as found."""
+REACH = 1e-6
+"""Displacements and tilts [m, rad] over which forces are differenced through states that follow them."""
 
 
 @dataclass(frozen=True)
@@ -49,14 +52,18 @@ def rotor_point(scene: Scene, speed: float, *, lines: LineMatrices | None = None
     names = [lines.names[k] for k in lateral]
     at_rest = dict.fromkeys(names, 0.0)
 
-    def state(q: FloatArray) -> tuple[dict[str, float], dict[str, float]]:
-        return {**angles, **dict(zip(names, q.tolist(), strict=True))}, {**speeds, **at_rest}
+    following = FollowingStates(network)
+
+    def state(q: FloatArray) -> tuple[dict[str, float], dict[str, float], Mapping[str, float]]:
+        placed, moving = {**angles, **dict(zip(names, q.tolist(), strict=True))}, {**speeds, **at_rest}
+        return placed, moving, {**twist.states, **following.at_rest(placed, moving, twist.states)} if following else twist.states
 
     def unbalanced(q: FloatArray) -> FloatArray:
-        return lines.forces(*state(q), twist.states)[lateral]
+        return lines.forces(*state(q))[lateral]
 
     def slope(q: FloatArray) -> FloatArray:
-        return lines.at(*state(q), twist.states).stiffness[np.ix_(lateral, lateral)]
+        stiffness = lines.at(*state(q)).stiffness[np.ix_(lateral, lateral)]
+        return stiffness - _through(q, lambda at: lines.forces(*state(q)[:2], state(at)[2])[lateral]) if following else stiffness
 
     q = np.array([start.angles[name] if start is not None else 0.0 for name in names])
     scale = max(1.0, *(float(np.max(np.abs(unbalanced(at)), initial=0.0)) for at in (q, 0.0 * q)))  # of the weights too
@@ -71,8 +78,13 @@ def rotor_point(scene: Scene, speed: float, *, lines: LineMatrices | None = None
             "Something has to hold every place laterally there: bearings for each shaft, a motor's beyond a coupling too; give weight "
             "(a Gravity part) to bearings that need a load."
         )
-    found, turning_speeds = state(q)
-    return RotorPoint(speed, found, turning_speeds, twist.states)
+    return RotorPoint(speed, *state(q))
+
+
+def _through(q: FloatArray, forces: _Vector) -> FloatArray:
+    """d(forces)/dq of what follows q in states, by differences that are as long as displacements of lines are."""
+    steps = REACH * np.eye(len(q))
+    return np.array([(forces(q + step) - forces(q - step)) / (2.0 * REACH) for step in steps]).T
 
 
 def _balanced(q: FloatArray, unbalanced: _Vector, slope: _Vector, enough: float) -> tuple[FloatArray, FloatArray]:

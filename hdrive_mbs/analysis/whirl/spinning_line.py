@@ -71,6 +71,7 @@ class SpinningLine:
         self.network = first.network()
         self._prescribed = first is not self.scene
         self._lines = LineMatrices(self.network)
+        self._lines.check_memory()
         self.names = self._lines.names
         self.mass = self._lines.mass + eccentric_inertia(scene, self.names)
         self.couplings = self._lines.couplings()
