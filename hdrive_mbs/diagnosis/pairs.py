@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
+from typing import Any
 
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect, renamed
-from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, Found, Task, further, run_task, those_that_ran
+from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, FIRST, Found, Task, further, is_hopeless, run_task, those_that_ran
 from hdrive_mbs.diagnosis.team import Team
+from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import ParameterError
 
 TOGETHER = 5
 """Joint steps of two causes that are put together."""
@@ -92,14 +96,35 @@ def moved(team: Team, simulator: Simulator, pairs: Sequence[Found], tried: Seque
     tasks, whose = [], []
     for k, mine in enumerate(full.added):
         for place in tried:
-            added = Added(mine.effect, place.at, mine.name)
-            hypothesis = Hypothesis(full.factors, (*full.added[:k], added, *full.added[k + 1 :]), full.loose)
-            if place.kind is not type(mine.effect) or _causes_of(hypothesis) in known or len(hypothesis.labels) < len(full.added):
-                continue
-            is_second = k == len(full.added) - 1 and best.suspect.law != PARAMETER
-            tasks.append(Task(hypothesis, z, None, MOVED, FINE, leading=best.fitted.chi_fit))
-            whose.append(Suspect(added.label, place.kind.__name__, (hypothesis,), (hypothesis,)) if is_second else best.suspect)
-    return those_that_ran(whose, team.map(run_task, simulator, tasks))
+            for effect in dict.fromkeys((mine.effect, _plain(mine.effect))):
+                added = Added(effect, place.at, mine.name)
+                hypothesis = Hypothesis(full.factors, (*full.added[:k], added, *full.added[k + 1 :]), full.loose)
+                if place.kind is not type(effect) or _causes_of(hypothesis) in known or len(hypothesis.labels) < len(full.added):
+                    continue
+                is_second = k == len(full.added) - 1 and best.suspect.law != PARAMETER
+                start = z if effect is mine.effect else hypothesis.start(full.nominal_part(z))
+                tasks.append(Task(hypothesis, start, None, FIRST, FINE))
+                whose.append(Suspect(added.label, place.kind.__name__, (hypothesis,), (hypothesis,)) if is_second else best.suspect)
+    begun: dict[frozenset[object], Found] = {}
+    for item in sorted(those_that_ran(whose, team.map(run_task, simulator, tasks)), key=lambda item: item.fitted.cost):
+        begun.setdefault(_causes(item), item)
+    found = [item for item in begun.values() if item.fitted.converged or is_hopeless(item.fitted.chi_fit, best.fitted.chi_fit)]
+    going = [item for item in begun.values() if item not in found]
+    fits = team.map(run_task, simulator, [further(item.fitted, MOVED - FIRST) for item in going])
+    return [*found, *those_that_ran([item.suspect for item in going], fits)]
+
+
+def _plain(effect: Effect) -> Effect:
+    """An effect with what has a default at its default: the rest was bent to fit another place."""
+    given = {field.name: getattr(effect, field.name) for field in dataclasses.fields(effect) if field.init and _is_asked_for(field)}
+    try:
+        return type(effect)(**given)
+    except ParameterError:
+        return effect
+
+
+def _is_asked_for(field: dataclasses.Field[Any]) -> bool:
+    return field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
 
 
 def contenders(team: Team, simulator: Simulator, pairs: Sequence[Found], first: Found) -> tuple[Found, ...]:
