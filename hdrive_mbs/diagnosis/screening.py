@@ -27,6 +27,11 @@ FloatArray = npt.NDArray[np.float64]
 
 PARTS = (1.0, 0.4, 0.1)
 """Of the linear step, run side by side: three cost little more than one, and need no other machine code."""
+FOLLOWED, DIRECTED = 6, 3
+"""Starts of a law at a place that are looked at with all that is searched of it; of one that begins with an amplitude and a phase,
+which the records answer linearly, so that what each promises is known."""
+ORIGIN = -1
+"""Stands for a start itself among the coordinates along which it was moved."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +48,38 @@ class Look:
     start: Hypothesis
 
 
+class _Starts:
+    """Starts that differ in searched values alone, and what was run of them.
+
+    origins : search coordinates of each start;  steps : of the differences, by coordinate
+    found : for each start coordinate -> residuals a step away along it; None where it cannot be run
+    """
+
+    def __init__(self, starts: Sequence[Hypothesis], origins: Sequence[FloatArray], base: Fitted) -> None:
+        self.hypothesis, self.starts, self.origins = starts[0], list(starts), list(origins)
+        self.steps = self.hypothesis.steps(self.origins[0])
+        known = {ORIGIN: base.residuals} if self.hypothesis.size == base.hypothesis.size else {}
+        self.found: list[dict[int, FloatArray | None]] = [dict(known) for _ in starts]
+
+    def run(self, simulator: Simulator, along: Sequence[int]) -> None:
+        """Run the starts and what is a step away from them along some coordinates, as far as it has not been."""
+        asked = [(k, coordinate) for k, found in enumerate(self.found) for coordinate in (ORIGIN, *along) if coordinate not in found]
+        points = [self._moved(k, coordinate) for k, coordinate in asked]
+        for (k, coordinate), residuals in zip(asked, simulator.residuals(self.hypothesis, points) if points else [], strict=True):
+            self.found[k][coordinate] = residuals
+
+    def _moved(self, k: int, coordinate: int) -> FloatArray:
+        moved = self.origins[k].copy()
+        if coordinate != ORIGIN:
+            moved[coordinate] += self.steps[coordinate]
+        return moved
+
+    def keep(self, kept: Sequence[int]) -> None:
+        """Leave out all starts but some."""
+        self.starts, self.origins = [self.starts[k] for k in kept], [self.origins[k] for k in kept]
+        self.found = [self.found[k] for k in kept]
+
+
 class Screen:
     """A fitted model, nominal or with causes already, and its Jacobian, from which all candidates are looked at."""
 
@@ -53,10 +90,17 @@ class Screen:
         self._normal = self._weighted.T @ columns
 
     def look(self, hypotheses: Sequence[Hypothesis]) -> Look | None:
-        """The best of several starts; None where none of them can be run."""
+        """The best of several starts; None where none of them can be run.
+
+        Of many, those are looked at whole whose first size promises most with all else as it begins.
+        """
         best: Look | None = None
-        for some in _alike(hypotheses):
-            for look in self._looks(some):
+        groups = [_Starts(some, [self._start(start, some[0]) for start in some], self.null) for some in _alike(hypotheses)]
+        most = DIRECTED if all(_is_directed(group.hypothesis, self.null.hypothesis.size) for group in groups) else FOLLOWED
+        if len(hypotheses) > most:
+            self._keep_the_most_promising(groups, most)
+        for group in groups:
+            for look in self._looks(group):
                 if best is None or look.cost < best.cost:
                     best = look
         if best is None:
@@ -64,40 +108,51 @@ class Screen:
         hypothesis, z = best.hypothesis.rescaled(best.z)
         return Look(hypothesis, z, best.cost, best.residuals, best.start)
 
-    def _looks(self, starts: Sequence[Hypothesis]) -> Iterator[Look]:
+    def _keep_the_most_promising(self, groups: Sequence[_Starts], most: int) -> None:
+        ranked = []
+        for group in groups:
+            leading = _leading(group.hypothesis, self.null.hypothesis.size)
+            group.run(self.simulator, leading)
+            ranked += [(self._promise(group, k, leading), group, k) for k in range(len(group.starts))]
+        kept = sorted(ranked, key=lambda item: -item[0])[:most]
+        for group in groups:
+            group.keep([k for _, of, k in kept if of is group])
+
+    def _promise(self, group: _Starts, k: int, along: Sequence[int]) -> float:
+        """By how much the misfit falls if all goes on as it begins along some coordinates, with the base's parameters free to follow;
+        nothing along one that would have to become negative."""
+        if group.found[k][ORIGIN] is None or not along:
+            return 0.0
+        base, columns = self._columns(group, k, along)
+        weighted = columns * self._weights[:, None]
+        cross = self._weighted.T @ columns
+        freed = np.linalg.lstsq(self._normal + np.diag(self.null.hypothesis.precisions), cross, rcond=1e-14)[0]
+        slope = weighted.T @ base - freed.T @ (self._weighted.T @ base)
+        move = -np.linalg.lstsq(weighted.T @ columns - freed.T @ cross, slope, rcond=1e-12)[0]
+        return 0.0 if len(along) == 1 and move[0] <= 0.0 else -0.5 * float(slope @ move)
+
+    def _looks(self, group: _Starts) -> Iterator[Look]:
         """Looks from starts that differ in searched values alone: all of them are run side by side."""
-        hypothesis = starts[0]
-        first = self.null.hypothesis.size
-        steps = hypothesis.steps(self._start(hypothesis))
-        origins = [self._start(start, hypothesis) for start in starts]
-        points = []
-        for origin in origins:
-            points.append(origin)
-            for k in range(first, hypothesis.size):
-                moved = origin.copy()
-                moved[k] += steps[k]
-                points.append(moved)
-        each = 1 + hypothesis.size - first
-        found = self.simulator.residuals(hypothesis, points) if each > 1 else [self.null.residuals] * len(points)
+        hypothesis = group.hypothesis
+        own = range(self.null.hypothesis.size, hypothesis.size)
+        group.run(self.simulator, own)
         proposed: list[FloatArray] = []
         begun: list[Hypothesis] = []
-        for number, origin in enumerate(origins):
-            own = found[number * each : (number + 1) * each]
-            if own[0] is not None:
-                step = self._step(hypothesis, origin, *self._columns(own, steps[first:]))
+        for k, (start, origin) in enumerate(zip(group.starts, group.origins, strict=True)):
+            if group.found[k][ORIGIN] is not None:
+                step = self._step(hypothesis, origin, *self._columns(group, k, own))
                 moves = [part * move for move in (step, *self._held_back(hypothesis, origin, step)) for part in PARTS]
                 proposed += [hypothesis.clipped(origin + move) for move in moves]
-                begun += [starts[number]] * len(moves)
+                begun += [start] * len(moves)
         yield from self._run(hypothesis, proposed, begun)
 
     def _held_back(self, hypothesis: Hypothesis, origin: FloatArray, step: FloatArray) -> Iterator[FloatArray]:
         """The same step with all of the effect that was added last but its first strength divided by what that grows."""
         own = self.null.hypothesis.size
-        pairs = zip(hypothesis.unknowns, hypothesis.slices, strict=True)
-        strengths = [part for unknown, part in pairs if part.start >= own and isinstance(unknown, Strength | Vector)]
-        if not strengths:
+        sizes = _sizes(hypothesis, own)
+        if not sizes:
             return
-        first = strengths[0]
+        first = sizes[0][1]
         before, after = (float(np.linalg.norm(point[first])) for point in (origin, origin + step))
         if after > before > 0.0:
             shares = np.where(np.arange(len(step)) < own, 1.0, before / after)
@@ -111,14 +166,17 @@ class Screen:
                 misfit = self.simulator.blocks.cost(residuals[self.simulator.fit])
                 yield Look(hypothesis, point, misfit + hypothesis.prior_cost(point), residuals, start)
 
-    def _columns(self, found: Sequence[FloatArray | None], steps: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Fitted residuals at a start, and the Jacobian's columns of everything that the base has not."""
-        assert found[0] is not None
-        fitted = found[0][self.simulator.fit]
-        columns = np.zeros((len(steps), len(fitted)))
-        for k, item in enumerate(found[1:]):
+    def _columns(self, group: _Starts, k: int, along: Sequence[int]) -> tuple[FloatArray, FloatArray]:
+        """Fitted residuals at a start, and the Jacobian's columns along some coordinates; zero where they could not be run."""
+        fit = self.simulator.fit
+        origin = group.found[k][ORIGIN]
+        assert origin is not None
+        fitted = origin[fit]
+        columns = np.zeros((len(along), len(fitted)))
+        for row, coordinate in zip(columns, along, strict=True):
+            item = group.found[k][coordinate]
             if item is not None:
-                columns[k] = (item[self.simulator.fit] - fitted) / steps[k]
+                row[:] = (item[fit] - fitted) / group.steps[coordinate]
         return fitted, columns.T
 
     def _start(self, start: Hypothesis, hypothesis: Hypothesis | None = None) -> FloatArray:
@@ -149,6 +207,22 @@ class Screen:
         slope += hypothesis.precisions * start
         sizes = (np.arange(len(start)) >= hypothesis.nominal_size) & (hypothesis.precisions == 0.0)
         return bounded_step(hypothesis, start, normal, slope, held=sizes)
+
+
+def _sizes(hypothesis: Hypothesis, first: int) -> list[tuple[Strength | Vector, slice]]:
+    """Sizes of effects, and where they sit among the search coordinates, from a first one on."""
+    pairs = zip(hypothesis.unknowns, hypothesis.slices, strict=True)
+    return [(unknown, part) for unknown, part in pairs if part.start >= first and isinstance(unknown, Strength | Vector)]
+
+
+def _leading(hypothesis: Hypothesis, first: int) -> list[int]:
+    """Coordinates of the first size from there on."""
+    return [k for _, part in _sizes(hypothesis, first)[:1] for k in range(part.start, part.stop)]
+
+
+def _is_directed(hypothesis: Hypothesis, first: int) -> bool:
+    """Whether the first size from there on has an amplitude and a phase."""
+    return any(isinstance(unknown, Vector) for unknown, _ in _sizes(hypothesis, first)[:1])
 
 
 def _alike(hypotheses: Sequence[Hypothesis]) -> list[list[Hypothesis]]:

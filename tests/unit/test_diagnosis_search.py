@@ -327,6 +327,29 @@ def test_a_look_also_runs_its_step_with_shapes_held_back_by_what_the_strength_gr
     assert list(screen._held_back(base.hypothesis, base.z, base.z)) == []  # nothing was added
 
 
+def test_of_many_starts_with_a_phase_those_that_promise_most_are_looked_at_whole() -> None:
+    """An error of order 2 among starts at eight orders: found as from its own start, with three quarters of the runs of all at most."""
+    both = Simulator(BENCH.trials(records((hm.KinematicError(amplitude=2e-4, order=2.0, phase=0.4), "gear"))[0]), 2.5e-4, 4)
+    factors = factors_of(BENCH)
+    orders = (1.0, 3.0, 4.0, 5.0, 2.0, 6.0, 7.0, 8.0)
+    starts = [Hypothesis(factors, (Added(hm.KinematicError(amplitude=1e-5, order=n), "gear", "error"),)) for n in orders]
+    base = fit(both, Hypothesis(factors), np.zeros(len(factors)), steps=0)
+    screen = screen_from(both, base)
+    looks, runs = [], []
+    for asked in (starts, *([start] for start in starts)):
+        before = both.runs
+        looks.append(screen.look(asked))
+        runs.append(both.runs - before)
+    of_all, own = looks[0], looks[1 + orders.index(2.0)]
+    assert of_all is not None
+    assert own is not None
+    assert of_all.start is own.start
+    assert of_all.cost == pytest.approx(own.cost, rel=1e-9)
+    assert all(look is None or own.cost <= look.cost for look in looks[1:])
+    whole = sum(runs[1:])
+    assert runs[0] < 0.75 * whole
+
+
 def test_a_first_look_finds_a_hidden_mode_whose_frequency_no_start_has() -> None:
     missing = Simulator(
         BENCH.trials(records((hm.HiddenMode(inertia=0.02, natural_frequency=310.0, damping_ratio=0.05), "load"))[0]), 2.5e-4, 4
