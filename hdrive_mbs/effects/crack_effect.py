@@ -53,6 +53,7 @@ class CrackEffect(Effect):
         "position": (0.2, 0.8),
         "angle": (0.0, 1.57, 3.14, -1.57),
     }
+    decisive: ClassVar[tuple[str, ...]] = ("angle",)
 
     @abstractmethod
     def opening(self, moment: Value, cosine: Value, sine: Value, gravity: tuple[float, float]) -> tuple[Value, Value]:

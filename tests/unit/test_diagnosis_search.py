@@ -28,7 +28,7 @@ from hdrive_mbs.diagnosis.located import Located, located
 from hdrive_mbs.diagnosis.normal_equations import STRETCH, normal_equations
 from hdrive_mbs.diagnosis.pairs import alone, contenders, moved
 from hdrive_mbs.diagnosis.result import Cause, Place
-from hdrive_mbs.diagnosis.screening import Look, Screen
+from hdrive_mbs.diagnosis.screening import FAINTEST, Look, Screen, Starts
 from hdrive_mbs.diagnosis.search import ENOUGH, Search, fit_nominal, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, simplest, suspects
@@ -348,6 +348,33 @@ def test_of_many_starts_with_a_phase_those_that_promise_most_are_looked_at_whole
     assert all(look is None or own.cost <= look.cost for look in looks[1:])
     whole = sum(runs[1:])
     assert runs[0] < 0.75 * whole
+
+
+def test_a_start_that_changes_more_than_the_gap_begins_at_a_part_of_its_size(simulator: Simulator) -> None:
+    """Far above what is there a step leads nowhere; a start that the gap has room for stays as it is."""
+    factors = factors_of(BENCH)
+    base = fit(simulator, Hypothesis(factors), np.zeros(len(factors)), steps=0)
+    before = simulator.blocks.cost(base.residuals[simulator.fit])
+    gap = before - 0.5 * np.count_nonzero(simulator.fit)
+    assert gap > FAINTEST
+    sizes = (5e-3, 1e-7)
+    starts = [Hypothesis(factors, (Added(hm.KinematicError(amplitude=size, order=2.0), "gear", "error"),)) for size in sizes]
+    screen = screen_from(simulator, base)
+    origins = [screen._start(start, starts[0]) for start in starts]
+    first = len(factors)
+
+    def cost(origin: np.ndarray) -> float:
+        [residuals] = simulator.residuals(starts[0], [origin])
+        assert residuals is not None
+        return simulator.blocks.cost(residuals[simulator.fit]) - before
+
+    assert cost(origins[0]) > gap > cost(origins[1])
+    group = Starts(starts, [origin.copy() for origin in origins], base)
+    screen._begin_fainter(group)
+    fainter, same = group.origins
+    assert 0.0 < cost(fainter) < gap
+    assert np.linalg.norm(fainter[first : first + 2]) < 0.5 * np.linalg.norm(origins[0][first : first + 2])
+    np.testing.assert_array_equal(same, origins[1])
 
 
 def test_a_first_look_finds_a_hidden_mode_whose_frequency_no_start_has() -> None:
