@@ -32,8 +32,8 @@ FOLLOWED, DIRECTED = 6, 3
 """Starts of a law at a place that are looked at with all that is searched of it; of one that begins with an amplitude and a phase,
 which the records answer linearly, so that what each promises is known."""
 FAINTEST, WITHIN = 50.0, 0.1
-"""Log-likelihood of a gap, at least, and the share of it that a start may cost, which goes with the square of its size.  From starts of four
-times its compliance a crack was not seen (our own open rotor set of seed 1801, c05: the refitted model leaves 1.010)."""
+"""Log-likelihood of a gap, at least, and the share of it that a start may cost, which goes with the square of its size.  From starts with
+four times its compliance a crack was not seen (our own open rotor set of seed 1801, c05: the refitted model leaves 1.010)."""
 ORIGIN = -1
 """Stands for a start itself among the coordinates along which it was moved."""
 
