@@ -60,7 +60,10 @@ def on_all_samples(
     nominal, refitted, *others = team.map(_done, fine, work, said)
     if nominal is None or refitted is None:
         raise AnalysisError(CANNOT_RUN)
-    return Last(nominal, refitted, tuple(others), place or located(fine, refitted))
+    if place is None:
+        team.dismiss()  # it is the last that they do, and a localisation needs the memory
+        place = located(fine, refitted)
+    return Last(nominal, refitted, tuple(others), place)
 
 
 def _done(fine: Simulator, work: Work) -> Any:

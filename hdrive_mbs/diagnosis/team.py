@@ -50,10 +50,14 @@ class Team:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        while self._running:
-            self._running.pop().end(PATIENCE if error is None else 0.0)
+        self.dismiss(PATIENCE if error is None else 0.0)
         if self._folder is not None:
             self._folder.cleanup()
+
+    def dismiss(self, patience: float = PATIENCE) -> None:
+        """End the processes, which are idle, and with them what they keep; another map begins new ones."""
+        while self._running:
+            self._running.pop().end(patience)
 
     def map(
         self,

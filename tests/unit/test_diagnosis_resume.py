@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Iterator
 from functools import partial
+from multiprocessing import active_children
 from pathlib import Path
 
 import numpy as np
@@ -317,6 +318,15 @@ def test_answers_come_in_the_order_of_the_questions_and_a_team_goes_on(team: Tea
     told: list[tuple[int, int]] = []
     assert team.map(double, 2, list(range(9)), lambda done, total: told.append((done, total))) == [2 * k for k in range(9)]
     assert told == [(k, 9) for k in range(10)]
+    assert team.map(double, 3, [1, 2]) == [3, 6]
+
+
+def test_a_team_that_was_dismissed_holds_no_process_and_works_again(team: Team) -> None:
+    before = set(active_children())
+    assert team.map(double, 2, [1, 2]) == [2, 4]
+    assert len(set(active_children()) - before) == 2
+    team.dismiss()
+    assert not set(active_children()) - before
     assert team.map(double, 3, [1, 2]) == [3, 6]
 
 

@@ -159,7 +159,7 @@ class Localiser:
         if len(contenders) < 2 or tried[0].found.left < UNCLEAR * self._about.likelihood.numbers:
             return tried
         now, best = {k: tried[k] for k in contenders}, dict[int, _Tried]()
-        for _ in range(TIMES):
+        for time in range(TIMES):
             for k, item in list(now.items()):
                 about = self._about_force(item)
                 if about is None:
@@ -168,6 +168,8 @@ class Localiser:
                 now[k] = self._try(about, item.name, np.zeros(len(item.found.z)), rounds=2)
                 if k not in best or now[k].gain > best[k].gain:
                     best[k] = now[k]
+                if time == TIMES - 1:
+                    now[k] = best[k]  # nothing goes on from the last: what a model linearised anew holds (75 MB of a drive) is let go
             top = max((item.gain for item in best.values()), default=0.0)
             now = {k: item for k, item in now.items() if best[k].gain > CONTENDS * top}
             if len(now) < 2:
