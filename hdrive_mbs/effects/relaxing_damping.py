@@ -20,16 +20,16 @@ from hdrive_mbs.quantities import parameter
 class RelaxingDamping(EveryPieceEffect):
     """Springs behind dampers beside the bending stiffness K_b, that turn with the shaft (standard linear solid).
 
-    F = -(t/r) K_b d,   d' = q' - w J q + w J d - d/r,   J turns by +90 degrees from x to y;   torque on the spin  -(t/r) (J q)^T K_b d
+    F = -(t/r) K_b d,   d' = q' - w J q + w J d - d/r,   J turns by +90 degrees from x to y;   torque on the spin  (t/r) (J q)^T K_b d
 
     with the stretch d of the springs, as the ground sees it.  A motion of the frequency W in the turning shaft meets the loss factor
     W t/(1 + W^2 r (r + t)): for slow ones it is InternalDamping of the time t, beyond W = 1/r it fades, and the shaft is stiffer by the
     share t/r there.  Whirl at w_k of a shaft that turns at w has W = w - w_k.  The springs begin without stretch.  Two states to each of
     two shapes of every piece of shaft, ``<effect>.<piece>.0.x`` and so on.
 
-    Source: N. W. Tschoegl, The Phenomenological Theory of Linear Viscoelastic Behavior (1989), 3.4.2; in a turning shaft: G. Genta,
-    Dynamics of Rotating Systems (2005), 3.3.  The torque follows from the energy (t/r) d^T K_b d/2 of the springs.  Leaves out
-    materials with several times.
+    Source: the standard linear solid, e.g. N. W. Tschoegl, The Phenomenological Theory of Linear Viscoelastic Behavior (1989), as an
+    observer sees it who does not turn with it; damping that turns: G. Genta, Dynamics of Rotating Systems (2005).  The torque follows
+    from the energy (t/r) d^T K_b d/2 of the springs.  Leaves out materials with several times.
     """
 
     time: float = parameter("s", "t, damping over bending stiffness for slow motion", low=0.0, high=1.0, typical=(1e-7, 1e-4))
