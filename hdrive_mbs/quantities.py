@@ -267,7 +267,7 @@ def _names(cls: type[Described]) -> tuple[tuple[str, ...], frozenset[str]]:
     found = _NAMES.get(cls)
     if found is None:
         fields = dataclasses.fields(cls)
-        found = tuple(field.name for field in fields if field.init), frozenset(field.name for field in fields if _is_needed(field))
+        found = tuple(field.name for field in fields if field.init), frozenset(field.name for field in fields if is_needed(field))
         _NAMES[cls] = found
     return found
 
@@ -281,7 +281,8 @@ def _checked(cls: type[Described]) -> tuple[tuple[dataclasses.Field[Any], Quanti
     return found
 
 
-def _is_needed(field: dataclasses.Field[Any]) -> bool:
+def is_needed(field: dataclasses.Field[Any]) -> bool:
+    """Whether a field has to be given: it has no default."""
     return field.init and field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Any
 
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
@@ -14,6 +13,7 @@ from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, FIRST, Found, Task, furt
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.quantities import is_needed
 
 TOGETHER = 5
 """Joint steps of two causes that are put together."""
@@ -116,15 +116,11 @@ def moved(team: Team, simulator: Simulator, pairs: Sequence[Found], tried: Seque
 
 def _plain(effect: Effect) -> Effect:
     """An effect with what has a default at its default: the rest was bent to fit another place."""
-    given = {field.name: getattr(effect, field.name) for field in dataclasses.fields(effect) if field.init and _is_asked_for(field)}
+    given = {field.name: getattr(effect, field.name) for field in dataclasses.fields(effect) if is_needed(field)}
     try:
         return type(effect)(**given)
     except ParameterError:
         return effect
-
-
-def _is_asked_for(field: dataclasses.Field[Any]) -> bool:
-    return field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
 
 
 def contenders(team: Team, simulator: Simulator, pairs: Sequence[Found], first: Found) -> tuple[Found, ...]:
