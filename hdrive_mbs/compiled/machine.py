@@ -9,6 +9,9 @@ from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import Any
 
+import llvmlite
+
+from hdrive_mbs.compiled.kept_code import kept_code, key_of
 from hdrive_mbs.compiled.llvm_code import functions
 from hdrive_mbs.compiled.runge_kutta import loop
 from hdrive_mbs.compiled.structure import Structure
@@ -59,21 +62,35 @@ def machine(structure: Structure, width: int = 1, *, shared: bool = True) -> Mac
     shared : all lanes have the same inputs
     """
     llvm, host = _llvm(), processor()
-    target, linker = _linker()
+    linker = _linker()[1]
     sources = [*functions(structure, width, shared=shared, fused=host.fused), *loop(structure.states, len(structure.readings), width)]
-    module = llvm.parse_assembly("\n".join(dict.fromkeys(sources)))
-    module.verify()
-    builder = llvm.create_pass_builder(
-        target, llvm.create_pipeline_tuning_options(speed_level=0)
-    )  # straight lines of code: more costs, gains nothing
-    builder.getModulePassManager().run(module, builder)
-    code = target.emit_object(module)
-    module.close()
+    code = _code("\n".join(dict.fromkeys(sources)))
     made = llvm.JITLibraryBuilder().add_object_img(code).export_symbol("run").add_current_process()
     library = made.link(linker, f"library {next(_NUMBERS)}")
     pointer, real, whole = ctypes.c_void_p, ctypes.c_double, ctypes.c_int64
     kind = ctypes.CFUNCTYPE(None, pointer, real, whole, whole, whole, pointer, pointer, pointer, pointer, pointer, whole)
     return Machine(kind(library["run"]), (library, linker))
+
+
+def _code(source: str) -> bytes:
+    """Machine code of a text for this processor, as it was kept or made now."""
+    llvm, host, store = _llvm(), processor(), kept_code()
+    key = key_of([source, llvmlite.__version__, repr(llvm.llvm_version_info), llvm.get_default_triple(), host.name, host.features])
+    found = None if store is None else store.read(key)
+    if found is not None:
+        return found
+    target = _linker()[0]
+    module = llvm.parse_assembly(source)
+    module.verify()
+    builder = llvm.create_pass_builder(
+        target, llvm.create_pipeline_tuning_options(speed_level=0)
+    )  # straight lines of code: more costs, gains nothing
+    builder.getModulePassManager().run(module, builder)
+    code: bytes = target.emit_object(module)
+    module.close()
+    if store is not None:
+        store.write(key, code)
+    return code
 
 
 @cache
