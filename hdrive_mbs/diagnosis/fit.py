@@ -16,9 +16,10 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.bounded import bounded_step
+from hdrive_mbs.diagnosis.differences import believed, jacobian, unseen_in
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
-from hdrive_mbs.diagnosis.normal_equations import STRETCH, normal_equations
-from hdrive_mbs.diagnosis.simulator import AT_ONCE, Simulator, chi_square
+from hdrive_mbs.diagnosis.normal_equations import normal_equations
+from hdrive_mbs.diagnosis.simulator import Simulator, chi_square
 from hdrive_mbs.errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
@@ -33,8 +34,6 @@ AS_PROMISED, WELL_PROMISED = 0.6, (0.8, 1.3)
 """Shares of what the whole undamped step promises: from the first on it is taken without trying others, and between the
 other two the Jacobian was good enough to be mended by what the step showed, in place of new differences."""
 TINY = 1e-300
-CHANGE, CAUTIOUS = 5.0, 0.15
-"""Change of the residuals (root of their sum of squares) that a difference makes, and share of the longest step it may take."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,51 +61,6 @@ class Fitted:
         """Of the search coordinates: inverse of J^T W J + prior."""
         total = self.curvature + np.diag(self.hypothesis.curvatures(self.z))
         return np.asarray(np.linalg.inv(total))
-
-
-def jacobian(
-    simulator: Simulator, hypothesis: Hypothesis, z: FloatArray, residuals: FloatArray, metric: FloatArray | None = None
-) -> FloatArray:
-    """d residuals/dz over the fitted samples, shape (n, size), by differences; a column that cannot be run is zero.
-
-    metric : J^T W J + P of a point nearby.  The differences are then taken along its axes, each as long as it takes to
-        change the residuals by CHANGE: what hardly shows gets a long step, and is not buried under the errors of what
-        shows most.
-    """
-    mask = simulator.fit
-    base = residuals[mask]
-    directions = np.diag(hypothesis.steps(z)) if metric is None else _axes(hypothesis, z, metric)
-    points = []
-    for k in range(len(z)):
-        if not np.allclose(hypothesis.clipped(z + directions[:, k]), z + directions[:, k], rtol=0.0, atol=1e-14):
-            directions[:, k] *= -1.0
-        points.append(z + directions[:, k])
-    if metric is not None and not all(np.allclose(hypothesis.clipped(point), point, rtol=0.0, atol=1e-14) for point in points):
-        return jacobian(simulator, hypothesis, z, residuals)
-    changes = np.zeros((len(z), len(base)))
-    for first in range(0, len(points), AT_ONCE):
-        for k, item in enumerate(simulator.residuals(hypothesis, points[first : first + AT_ONCE]), first):
-            if item is not None:
-                np.subtract(item[mask], base, out=changes[k])
-            elif metric is not None:
-                return jacobian(simulator, hypothesis, z, residuals)
-    if metric is None:
-        changes /= np.diag(directions)[:, None]
-    else:
-        for first in range(0, len(base), STRETCH):
-            some = changes[:, first : first + STRETCH]
-            some[:] = np.linalg.solve(directions.T, some)
-    return changes.T
-
-
-def _axes(hypothesis: Hypothesis, z: FloatArray, metric: FloatArray) -> FloatArray:
-    """Axes of a metric as columns, each of length CHANGE in it or as far as a cautious step goes."""
-    scale = np.sqrt(np.maximum(np.diag(metric), 1e-300))
-    values, vectors = np.linalg.eigh(metric / np.outer(scale, scale))
-    values = np.maximum(values, 1e-12 * values[-1])
-    axes = vectors / scale[:, None] * (CHANGE / np.sqrt(values))
-    longest = np.max(np.abs(axes) / (CAUTIOUS * hypothesis.reaches(z))[:, None], axis=0)
-    return np.asarray(axes / np.maximum(longest, 1.0))
 
 
 def fit(
@@ -140,9 +94,11 @@ def fit(
     curvature = np.zeros((len(z), len(z)))
     columns: FloatArray | None = None
     fresh = True  # of differences at this very point
+    unseen = believed(simulator, hypothesis)
     for _ in range(0 if converged else steps):
         if columns is None:
-            columns, fresh = jacobian(simulator, hypothesis, z, residuals), True
+            columns, fresh = jacobian(simulator, hypothesis, z, residuals, unseen=unseen), True
+            unseen = list(unseen_in(simulator, hypothesis, z, residuals, columns)) if len(simulator.spans) > 1 else unseen
         weights = simulator.blocks.weights(residuals[mask])
         systems = {}
         for power, _ in SHORTER:

@@ -13,10 +13,12 @@ from hdrive_mbs.diagnosis.all_samples import CANNOT_RUN, as_given, on_all_sample
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import enough, leaves
+from hdrive_mbs.diagnosis.differences import jacobian, unseen_in
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.located import Located, bends, located
 from hdrive_mbs.diagnosis.pairs import alone, contenders, joined, moved, swapped
+from hdrive_mbs.diagnosis.reach import Trials
 from hdrive_mbs.diagnosis.search import Depth, Report, Search, fit_nominal, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import suspects
@@ -108,6 +110,12 @@ def _placed(coarse: Simulator, fine: Simulator, factors: Sequence[Factor]) -> Lo
     return located(fine, nominal)
 
 
+def _unseen(simulator: Simulator, fitted: Fitted) -> tuple[Trials, ...]:
+    """Of each coordinate the trials in which it does not show."""
+    columns = jacobian(simulator, fitted.hypothesis, fitted.z, fitted.residuals)
+    return unseen_in(simulator, fitted.hypothesis, fitted.z, fitted.residuals, columns)
+
+
 def _there(
     team: Team, coarse: Simulator, null: Fitted, single: Search, place: Located | None, tried: Sequence[Candidate], said: Report
 ) -> tuple[Found, ...]:
@@ -182,6 +190,8 @@ def gather(
     """
     said = report or (lambda stage, done, total: None)
     null, place = _begun(team, coarse, fine, factors, said)
+    unseen = dict(zip((item.name for item in factors), _unseen(coarse, null), strict=True))
+    coarse, fine = coarse.knowing(unseen), fine.knowing(unseen)
     single = search(team, coarse, null, groups, tried, report=said)
     there = _there(team, coarse, null, single, place, tried, said)
     single = _with(single, there)

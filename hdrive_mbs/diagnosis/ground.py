@@ -11,7 +11,8 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian
+from hdrive_mbs.diagnosis.differences import believed, jacobian
+from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.screening import Screen
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -26,7 +27,8 @@ STEPS, SHARE = 12, 1e-2
 
 def screen_from(simulator: Simulator, model: Fitted) -> Screen:
     """Looks at candidates from a model at a point, with its Jacobian there."""
-    return Screen(simulator, model, jacobian(simulator, model.hypothesis, model.z, model.residuals))
+    unseen = believed(simulator, model.hypothesis)
+    return Screen(simulator, model, jacobian(simulator, model.hypothesis, model.z, model.residuals, unseen=unseen))
 
 
 def held(simulator: Simulator, model: Fitted) -> Fitted:

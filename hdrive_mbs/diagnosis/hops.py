@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.bounded import bounded_step
-from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian
+from hdrive_mbs.diagnosis.differences import jacobian
+from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.normal_equations import normal_equations
 from hdrive_mbs.diagnosis.simulator import Simulator
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import gc
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -69,13 +69,13 @@ class Lines:
             self._inputs[family[0]] = sorted({path for name, a, b in parts for path in _differing(a, b, name)})
         self._known: dict[tuple[int, Structure], tuple[Inputs, Inputs] | None] = {}
 
-    def at(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[list[Start | None]]:
-        """For each trial the line at each point; None where values do not go together."""
+    def at(self, hypothesis: Hypothesis, points: Sequence[FloatArray], skipped: Collection[int] = frozenset()) -> list[list[Start | None]]:
+        """For each trial the line at each point; None where values do not go together, and for trials that are skipped."""
         found: list[list[Start | None]] = [[None] * len(points) for _ in self._trials]
         with _collector_at_rest():
             for family in self._families:
                 for some in self._apart(family, hypothesis, points):
-                    for k, starts in self._family(some, hypothesis, points).items():
+                    for k, starts in self._family(some, hypothesis, points, skipped).items():
                         found[k] = starts
         return found
 
@@ -87,15 +87,23 @@ class Lines:
         apart = any(_meet(path, other) for path in hypothesis.values(points[0]) for other in differing)
         return [[k] for k in family] if apart else [family]
 
-    def _family(self, family: list[int], hypothesis: Hypothesis, points: Sequence[FloatArray]) -> dict[int, list[Start | None]]:
+    def _family(
+        self, family: list[int], hypothesis: Hypothesis, points: Sequence[FloatArray], skipped: Collection[int]
+    ) -> dict[int, list[Start | None]]:
         scene = self._trials[family[0]].scene
+        asked = {self._view(k) for k in family if k not in skipped}
+        if not asked:
+            return {}
+        # whatever is skipped, of each view the same one is the first, and all start where the forces of the same one balance
+        asked |= {self._view(k) for k in [k for k in family if self._trials[k].settled][:1]}
+        family = [k for k in family if self._view(k) in asked]
         networks = [_network(hypothesis, scene, point) for point in points]
         bases: dict[tuple[object, ...], tuple[int, list[CompiledLine | None]]] = {}
         resting: list[dict[str, float]] | None = None
         found: dict[int, list[Start | None]] = {}
         for k in family:
             trial = self._trials[k]
-            view = (*sorted(trial.motions), "/", *_channels(trial))
+            view = self._view(k)
             if view not in bases:
                 bases[view] = k, [self._compiled(network, k) for network in networks]
             of, lines = bases[view]
@@ -106,6 +114,11 @@ class Lines:
             rest = resting if trial.settled and resting is not None else [{} for _ in lines]
             found[k] = [None if line is None else Start(line, {**angles, **trial.angles}) for line, angles in zip(lines, rest, strict=True)]
         return found
+
+    def _view(self, k: int) -> tuple[str, ...]:
+        """What of the scene a trial shows."""
+        trial = self._trials[k]
+        return (*sorted(trial.motions), "/", *_channels(trial))
 
     def _taking(self, k: int, base: CompiledLine | None, hypothesis: Hypothesis, point: FloatArray) -> CompiledLine | None:
         """The line of trial k, from that of another one with the same parameters if only inputs differ."""

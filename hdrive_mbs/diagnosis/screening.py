@@ -21,6 +21,7 @@ import numpy.typing as npt
 from hdrive_mbs.diagnosis.bounded import bounded_step
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis, start_of
+from hdrive_mbs.diagnosis.reach import Trials, hardly_reached
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.unknowns import Strength, Vector
 
@@ -57,6 +58,7 @@ class Starts:
 
     origins : search coordinates of each start;  steps : of the differences, by coordinate
     found : for each start coordinate -> residuals a step away along it; None where it cannot be run
+    skipped : trials in which the first of them does not show, which are not run for any of them
     """
 
     def __init__(self, starts: Sequence[Hypothesis], origins: Sequence[FloatArray], base: Fitted) -> None:
@@ -64,13 +66,27 @@ class Starts:
         self.steps = self.hypothesis.steps(self.origins[0])
         known = {ORIGIN: base.residuals} if self.hypothesis.size == base.hypothesis.size else {}
         self.found: list[dict[int, FloatArray | None]] = [dict(known) for _ in starts]
+        self.skipped: Trials = frozenset()
+        self._base = base.residuals
 
     def run(self, simulator: Simulator, along: Sequence[int]) -> None:
         """Run the starts and what is a step away from them along some coordinates, as far as it has not been."""
         asked = [(k, coordinate) for k, found in enumerate(self.found) for coordinate in (ORIGIN, *along) if coordinate not in found]
         points = [self._moved(k, coordinate) for k, coordinate in asked]
-        for (k, coordinate), residuals in zip(asked, simulator.residuals(self.hypothesis, points) if points else [], strict=True):
+        found = simulator.residuals(self.hypothesis, points, self.skipped, [self._base] * len(points)) if points else []
+        for (k, coordinate), residuals in zip(asked, found, strict=True):
             self.found[k][coordinate] = residuals
+
+    def run_first(self, simulator: Simulator, weights: FloatArray) -> None:
+        """Run the first start, and leave out from then on the trials in which it does not show.
+
+        weights : of the fitted residuals of the base
+        """
+        if ORIGIN not in self.found[0]:
+            [residuals] = simulator.residuals(self.hypothesis, [self.origins[0]])
+            self.found[0][ORIGIN] = residuals
+            if residuals is not None:
+                self.skipped = hardly_reached(residuals[simulator.fit], self._base[simulator.fit], weights, simulator.spans)
 
     def _moved(self, k: int, coordinate: int) -> FloatArray:
         moved = self.origins[k].copy()
@@ -98,7 +114,7 @@ class Screen:
 
         Of many, those are looked at whole whose first size promises most with all else as it begins.
         """
-        best: Look | None = None
+        best: tuple[Look, Starts] | None = None
         groups = [Starts(some, [self._start(start, some[0]) for start in some], self.null) for some in _alike(hypotheses)]
         for group in groups:
             self._begin_fainter(group)
@@ -107,15 +123,25 @@ class Screen:
             self._keep_the_most_promising(groups, most)
         for group in groups:
             for look in self._looks(group):
-                if best is None or look.cost < best.cost:
-                    best = look
-        if best is None:
+                if best is None or look.cost < best[0].cost:
+                    best = look, group
+        whole = None if best is None else self._whole(*best)
+        if whole is None:
             return None
-        hypothesis, z = best.hypothesis.rescaled(best.z)
-        return Look(hypothesis, z, best.cost, best.residuals, best.start)
+        hypothesis, z = whole.hypothesis.rescaled(whole.z)
+        return Look(hypothesis, z, whole.cost, whole.residuals, whole.start)
+
+    def _whole(self, look: Look, group: Starts) -> Look | None:
+        """With the trials that were left out run too; None where they cannot be."""
+        if not group.skipped:
+            return look
+        others = frozenset(range(len(self.simulator.spans))) - group.skipped
+        [residuals] = self.simulator.residuals(look.hypothesis, [look.z], others, [look.residuals])
+        return None if residuals is None else self._look(look.hypothesis, look.z, residuals, look.start)
 
     def _begin_fainter(self, group: Starts) -> None:
         """Starts whose size alone changes the records by more than the whole gap begin at a part of it, which the gap has room for."""
+        group.run_first(self.simulator, self._weights)
         group.run(self.simulator, ())
         fit = self.simulator.fit
         before = self.simulator.blocks.cost(self.null.residuals[fit])
@@ -164,7 +190,7 @@ class Screen:
                 moves = [part * move for move in (step, *self._held_back(hypothesis, origin, step)) for part in PARTS]
                 proposed += [hypothesis.clipped(origin + move) for move in moves]
                 begun += [start] * len(moves)
-        yield from self._run(hypothesis, proposed, begun)
+        yield from self._run(group, proposed, begun)
 
     def _held_back(self, hypothesis: Hypothesis, origin: FloatArray, step: FloatArray) -> Iterator[FloatArray]:
         """The same step with all of the effect that was added last but its first strength divided by what that grows."""
@@ -179,12 +205,33 @@ class Screen:
             shares[first] = 1.0
             yield step * shares
 
-    def _run(self, hypothesis: Hypothesis, points: Sequence[FloatArray], begun: Sequence[Hypothesis]) -> Iterator[Look]:
-        found = self.simulator.residuals(hypothesis, points) if points else []
+    def _run(self, group: Starts, points: Sequence[FloatArray], begun: Sequence[Hypothesis]) -> Iterator[Look]:
+        """Looks at points; trials in which the effect does not show follow the parameters of the base as its Jacobian says."""
+        hypothesis = group.hypothesis
+        expected = [self._expected(hypothesis, point) for point in points] if group.skipped else []
+        found = self.simulator.residuals(hypothesis, points, group.skipped, expected) if points else []
         for point, start, residuals in zip(points, begun, found, strict=True):
             if residuals is not None:
-                misfit = self.simulator.blocks.cost(residuals[self.simulator.fit])
-                yield Look(hypothesis, point, misfit + hypothesis.prior_cost(point), residuals, start)
+                yield self._look(hypothesis, point, residuals, start)
+
+    def _look(self, hypothesis: Hypothesis, z: FloatArray, residuals: FloatArray, start: Hypothesis) -> Look:
+        misfit = self.simulator.blocks.cost(residuals[self.simulator.fit])
+        return Look(hypothesis, z, misfit + hypothesis.prior_cost(z), residuals, start)
+
+    def _expected(self, hypothesis: Hypothesis, z: FloatArray) -> FloatArray:
+        """Residuals of the base with its parameters moved, by its Jacobian; those that no fit sees as they are."""
+        base, fit = self.null, self.simulator.fit
+        moved = z[: base.hypothesis.size] - self._start(hypothesis)[: base.hypothesis.size]
+        residuals = base.residuals.copy()
+        residuals[fit] += self.columns @ (self._widened(hypothesis) * moved)
+        return residuals
+
+    def _widened(self, hypothesis: Hypothesis) -> FloatArray:
+        """By how much a coordinate of the base moves for one of a hypothesis in which some parameters are loose."""
+        loose = self.null.hypothesis.loose
+        wide = np.ones(self.null.hypothesis.size)
+        wide[: hypothesis.nominal_size] = [hypothesis.loose.get(f.name, 1.0) / loose.get(f.name, 1.0) for f in hypothesis.factors]
+        return wide
 
     def _columns(self, group: Starts, k: int, along: Sequence[int]) -> tuple[FloatArray, FloatArray]:
         """Fitted residuals at a start, and the Jacobian's columns along some coordinates; zero where they could not be run."""
@@ -214,9 +261,7 @@ class Screen:
         return z
 
     def _step(self, hypothesis: Hypothesis, start: FloatArray, base: FloatArray, columns: FloatArray) -> FloatArray:
-        first, base_loose = self.null.hypothesis.size, self.null.hypothesis.loose
-        wide = np.ones(first)
-        wide[: hypothesis.nominal_size] = [hypothesis.loose.get(f.name, 1.0) / base_loose.get(f.name, 1.0) for f in hypothesis.factors]
+        first, wide = self.null.hypothesis.size, self._widened(hypothesis)
         normal = np.zeros((hypothesis.size, hypothesis.size))
         normal[:first, :first] = self._normal * np.outer(wide, wide)
         weighted = columns * self._weights[:, None]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
+import itertools
 from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +23,7 @@ from hdrive_mbs.errors import ParameterError, SimulationError
 FloatArray = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 Values = dict[str, FloatArray]
+Skipped = frozenset[int]
 
 BLOCKS = 12
 """Stretches of a record, each with its own scale where the model is wrong."""
@@ -45,6 +48,8 @@ class Simulator:
     trials : at least one;  step : longest step of the integration [s]
     every : compare only each such sample: a cheaper look, less sharp
     parts : in which each step is divided;  again : whether what grows at it is run again with half of it, see ``run_trial``
+
+    unseen : by name of a nominal parameter the trials in which it is not believed to show (``Simulator.knowing``)
 
     Residuals are measured minus simulated in standard deviations of the noise, all columns of all trials one after
     the other (``segments``); ``fit`` and ``held_out`` say which of them a fit may see.
@@ -76,6 +81,8 @@ class Simulator:
         self.fit, self.held_out = np.concatenate(fit), np.concatenate(held)
         self.used = self.fit | self.held_out
         self.blocks = Blocks(self._numbered()[self.fit])
+        self.spans = self._spans()
+        self.unseen: Mapping[str, Skipped] = {}
         self.runs = 0
         self._forget()
 
@@ -99,21 +106,51 @@ class Simulator:
             parts.append(k * BLOCKS + np.arange(samples) * BLOCKS // samples)
         return np.unique(np.concatenate(parts), return_inverse=True)[1]
 
+    def _spans(self) -> tuple[slice, ...]:
+        """Where the fitted residuals of each trial sit among all fitted ones."""
+        spans = [[segment.span for segment in self.segments if segment.trial == k] for k in range(len(self.trials))]
+        counts = [int(np.count_nonzero(self.fit[some[0].start : some[-1].stop])) if some else 0 for some in spans]
+        ends = np.cumsum([0, *counts])
+        return tuple(slice(int(a), int(b)) for a, b in itertools.pairwise(ends))
+
+    def knowing(self, unseen: Mapping[str, Skipped]) -> Simulator:
+        """The same one, told in which trials changes are not believed to show; fits check it."""
+        other = copy.copy(self)
+        other.unseen = dict(unseen)
+        other._forget()
+        return other
+
     @property
     def size(self) -> int:
         """Number of residuals."""
         return len(self.fit)
 
-    def residuals(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[FloatArray | None]:
-        """Whitened residuals at each point, shape (size,); None where a point cannot be simulated."""
-        parts = (points[first : first + AT_ONCE] for first in range(0, len(points), AT_ONCE))
-        return [item for part in parts for item in self._residuals(hypothesis, part)]
+    def residuals(
+        self,
+        hypothesis: Hypothesis,
+        points: Sequence[FloatArray],
+        skipped: Skipped = frozenset(),
+        instead: Sequence[FloatArray] = (),
+    ) -> list[FloatArray | None]:
+        """Whitened residuals at each point, shape (size,); None where a point cannot be simulated.
 
-    def _residuals(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[FloatArray | None]:
-        found: list[FloatArray | None] = [np.empty(self.size) for _ in points]
+        skipped : numbers of trials that are not run;  instead : for each point residuals, shape (size,), from which theirs are taken
+        """
+        found: list[FloatArray | None] = []
+        for first in range(0, len(points), AT_ONCE):
+            found += self._residuals(hypothesis, points[first : first + AT_ONCE], skipped, instead[first : first + AT_ONCE])
+        return found
+
+    def _residuals(
+        self, hypothesis: Hypothesis, points: Sequence[FloatArray], skipped: Skipped, instead: Sequence[FloatArray]
+    ) -> list[FloatArray | None]:
+        found: list[FloatArray | None] = [instead[k].copy() if skipped else np.empty(self.size) for k in range(len(points))]
         index = 0
-        starts = self._lines.at(hypothesis, points)
+        starts = self._lines.at(hypothesis, points, skipped)
         for number, trial in enumerate(self.trials):
+            if number in skipped:
+                index += len(trial.columns)
+                continue
             simulated = self._simulated(number, starts[number])
             for column in trial.columns:
                 span, whiten, measured, there = self.segments[index].span, self._whiteners[index], self._measured[index], self._there[index]

@@ -33,9 +33,11 @@ class Waved:
         self.blocks = Blocks(np.zeros(int(self.fit.sum()), int))
         noise = np.random.default_rng(3).normal(size=SAMPLES)
         self.noise = noise - noise[self.fit].mean()  # so that the bottom of the bowl is where it is said to be
+        self.spans = (slice(0, int(self.fit.sum())),)
+        self.unseen: dict[str, frozenset[int]] = {}
         self.runs = 0
 
-    def residuals(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[FloatArray | None]:
+    def residuals(self, hypothesis: Hypothesis, points: Sequence[FloatArray], *left_out: object) -> list[FloatArray | None]:
         self.runs += len(points)
         return [self.noise + SLOPE * (z[0] - CENTRE) + self.wave * np.sin(self.number * z[0]) for z in points]
 

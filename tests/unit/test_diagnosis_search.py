@@ -18,7 +18,8 @@ from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate, candidates
 from hdrive_mbs.diagnosis.choosing import beyond, enough, passed_over, spread_out
 from hdrive_mbs.diagnosis.diagnose import factors_of, strongest_first
-from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian, secant
+from hdrive_mbs.diagnosis.differences import jacobian
+from hdrive_mbs.diagnosis.fit import Fitted, fit, secant
 from hdrive_mbs.diagnosis.from_the_best import bent, other_laws, unfinished
 from hdrive_mbs.diagnosis.gather import wants_second
 from hdrive_mbs.diagnosis.ground import held, screen_from
@@ -64,8 +65,8 @@ def test_a_jacobian_along_axes_is_the_same_in_stretches_of_any_length(simulator:
     fitted = fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=2)
     metric = fitted.curvature + np.diag(hypothesis.curvatures(fitted.z))
     whole = jacobian(simulator, hypothesis, fitted.z, fitted.residuals, metric)
-    monkeypatch.setattr("hdrive_mbs.diagnosis.fit.STRETCH", 37)
-    monkeypatch.setattr("hdrive_mbs.diagnosis.fit.AT_ONCE", 2)
+    monkeypatch.setattr("hdrive_mbs.diagnosis.differences.STRETCH", 37)
+    monkeypatch.setattr("hdrive_mbs.diagnosis.differences.AT_ONCE", 2)
     parts = jacobian(simulator, hypothesis, fitted.z, fitted.residuals, metric)
     np.testing.assert_allclose(parts, whole, rtol=1e-9, atol=1e-9 * np.abs(whole).max())
 

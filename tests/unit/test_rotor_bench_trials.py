@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import functools
 
 import numpy as np
 import pytest
@@ -20,53 +19,8 @@ from hdrive_mbs.diagnosis.following import following
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
-from hdrive_mbs.diagnosis.unknowns import Factor
-from hdrive_mbs.records.measurement import Measurement
-from hdrive_mbs.records.record import Record
 from models import rotor_bench
-
-UNITS = {"motor_torque": "N m", "spin_angle": "rad", **dict.fromkeys(rotor_bench.PROBES, "m")}
-PROBE = 3e-4
-"""m; an offset of probes."""
-
-
-@functools.cache
-def bench() -> rotor_bench.RotorBench:
-    return rotor_bench.bench()
-
-
-def factors(*names: str) -> tuple[Factor, ...]:
-    known = {name: bench().knowledge[name] for name in names}
-    return tuple(
-        Factor(path=item.paths[0], name=name, nominal=dict(zip(item.paths, bench().nominal(name), strict=True)), sigma=item.sigma)
-        for name, item in known.items()
-    )
-
-
-def recorded(name: str, columns: dict[str, np.ndarray], *, noisy: bool) -> Record:
-    """A record of the bench from what its channels are: with offsets of probes, noise and rounding of the data sheet."""
-    rng = np.random.default_rng(sum(name.encode()))
-    channels = {}
-    for column, values in columns.items():
-        seen = values + PROBE if column in rotor_bench.PROBES else values
-        if noisy:
-            seen = seen + rotor_bench.NOISE[column] * rng.standard_normal(len(values))
-            step = rotor_bench.RESOLUTION[column]
-            seen = step * np.round(seen / step)
-        channels[column] = Measurement(name=column, unit=UNITS.get(column, "m/s^2"), values=seen)
-    times = rotor_bench.SAMPLE_TIME * np.arange(len(next(iter(columns.values()))))
-    return Record(name=name, times=times, channels=channels)
-
-
-def compiled(name: str, duration: float, scene: hm.Scene | None = None) -> dict[str, np.ndarray]:
-    """Columns of a record from a compiled run under the controller, from rest in the static deflection."""
-    scene = rotor_bench.build(name) if scene is None else scene
-    columns = {item.channel: column for column, item in bench().measured.items()}
-    line = CompiledLine(without_idle(scene.network()), list(columns))
-    [rest] = equilibria([line])
-    speeds = dict.fromkeys(rotor_bench.POSITIONS, rotor_bench.REFERENCES[name][1][0])
-    run = line.run(round(duration / rotor_bench.SAMPLE_TIME), rotor_bench.SAMPLE_TIME, step=1.0 / 24000.0, angles=rest, speeds=speeds)
-    return {columns[channel]: values for channel, values in run.values.items()}
+from tests.unit.rotor_bench_records import bench, compiled, factors, recorded
 
 
 def test_a_record_of_the_engine_differs_from_both_views_by_its_noise_alone() -> None:

@@ -23,7 +23,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import lsq_linear
 
-from hdrive_mbs.diagnosis.fit import Fitted, jacobian
+from hdrive_mbs.diagnosis.differences import jacobian
+from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.errors import AnalysisError, ParameterError
