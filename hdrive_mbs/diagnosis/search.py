@@ -18,6 +18,7 @@ from hdrive_mbs.diagnosis.ground import held, screen_from
 from hdrive_mbs.diagnosis.hops import settled
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.periods import Periods
+from hdrive_mbs.diagnosis.scans import fits_from, scan, worth_a_scan
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import Label, Suspect, simplest, suspects
@@ -105,6 +106,7 @@ def search(
 ) -> Search:
     """Look at everything that may be missing from a fitted model, and fit the best together with its parameters.
 
+    Where the base is far from the records, parameters are tried all along their range first (scans.py).
     One simple law stands for each label in the first look.  The best labels are looked at with all laws and starts,
     the best of those get a few joint steps with their own Jacobians, and the best of these are fitted to the end.  Where they
     leave something, the places of their families that were passed over are fitted too.
@@ -117,7 +119,8 @@ def search(
     how = depth or Depth()
     work = _Work(team, simulator, report or (lambda stage, done, total: None), how, begin)
     everything = suspects(base.hypothesis, groups, tried)
-    found, first = work.from_ground(base, base, everything)
+    known = work.scanned(everything) if how.laws > 1 and base.chi_fit > NEAR else []
+    found, first = work.from_ground(base, base, everything, known)
     looks = {f"{suspect.law} at {suspect.label[1]}": cost for suspect, cost in first}
     if how.laws > 1 and how.again and base.chi_fit > FAR and not any(item.fitted.chi_fit < enough(base, ENOUGH) for item in found):
         likely = {suspect.label for suspect, _ in first[:SECOND_LOOKS]}
@@ -144,8 +147,20 @@ class _Work:
     how: Depth
     begin: Begin
 
-    def from_ground(self, model: Fitted, base: Fitted, everything: Sequence[Suspect]) -> tuple[list[Found], list[tuple[Suspect, float]]]:
-        """What is found from a model at some point, and the cost of the first looks, both best first."""
+    def scanned(self, everything: Sequence[Suspect]) -> list[Found]:
+        """Parameters tried all along their range, the best of them fitted from there."""
+        some = worth_a_scan(everything)
+        looks = self.team.map(scan, self.simulator, some, partial(self.said, "trying parameters along their range"))
+        asked = fits_from(list(zip(some, looks, strict=True)))
+        return cheapest(self.fitted(asked, "fitting parameters from where they came out best"))
+
+    def from_ground(
+        self, model: Fitted, base: Fitted, everything: Sequence[Suspect], known: Sequence[Found] = ()
+    ) -> tuple[list[Found], list[tuple[Suspect, float]]]:
+        """What is found from a model at some point, and the cost of the first looks, both best first.
+
+        known : what is fitted already, which others are held against
+        """
         screen = screen_from(self.simulator, model)
         everything = self._begun(everything, model)
         simple = simplest(everything)
@@ -158,12 +173,13 @@ class _Work:
         closer = [pair for pair in first if pair[0].label in chosen]
         if self.how.laws > 1:
             whole = [pair for pair in closer if pair[0].is_looked_at_whole]
-            known = [suspect for suspect, _ in whole]
-            laws = [item for item in everything if item.label in chosen and item not in known]
+            done = [suspect for suspect, _ in whole]
+            laws = [item for item in everything if item.label in chosen and item not in done]
             closer = by_cost([*whole, *self._looked(screen, laws, [item.all for item in laws], "looking closer")])
         best = picked(closer, laws=self.how.laws)[: self.how.picked]
-        tasks = [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE)) for suspect, look in best]
-        brief = cheapest(self.fitted(tasks, "a few joint steps"))
+        leading = min((item.fitted.chi_fit for item in known), default=None)
+        tasks = [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE, leading=leading)) for suspect, look in best]
+        brief = cheapest([*known, *self.fitted(tasks, "a few joint steps")])
         kept = brief[: worth(base.cost, [item.fitted.cost for item in brief], self.how.kept)]
         thorough = [
             (k < self.how.serious or item.suspect.label == kept[0].suspect.label) and not beyond(item.fitted, kept[0].fitted)
