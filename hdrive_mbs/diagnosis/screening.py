@@ -11,6 +11,7 @@ step that it gets is good for a_0.  Where the strength grows to g a_0 in the sam
 
 from __future__ import annotations
 
+import heapq
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -35,6 +36,8 @@ which the records answer linearly, so that what each promises is known."""
 FAINTEST, WITHIN = 50.0, 0.1
 """Log-likelihood of a gap, at least, and the share of it that a start may cost, which goes with the square of its size.  From starts with
 four times its compliance a crack was not seen (our own open rotor set of seed 1801, c05: the refitted model leaves 1.010)."""
+RUN_WHOLE = 3
+"""Looks that may be run through trials that were left out: the first one whose cost then is that of a run below what others promise."""
 ORIGIN = -1
 """Stands for a start itself among the coordinates along which it was moved."""
 
@@ -114,22 +117,31 @@ class Screen:
 
         Of many, those are looked at whole whose first size promises most with all else as it begins.
         """
-        best: tuple[Look, Starts] | None = None
         groups = [Starts(some, [self._start(start, some[0]) for start in some], self.null) for some in _alike(hypotheses)]
         for group in groups:
             self._begin_fainter(group)
         most = DIRECTED if all(_is_directed(group.hypothesis, self.null.hypothesis.size) for group in groups) else FOLLOWED
         if len(hypotheses) > most:
             self._keep_the_most_promising(groups, most)
-        for group in groups:
-            for look in self._looks(group):
-                if best is None or look.cost < best[0].cost:
-                    best = look, group
-        whole = None if best is None else self._whole(*best)
-        if whole is None:
+        looks = ((look, group) for group in groups for look in self._looks(group))
+        best = self._best_whole(heapq.nsmallest(RUN_WHOLE, looks, key=lambda pair: pair[0].cost))
+        if best is None:
             return None
-        hypothesis, z = whole.hypothesis.rescaled(whole.z)
-        return Look(hypothesis, z, whole.cost, whole.residuals, whole.start)
+        hypothesis, z = best.hypothesis.rescaled(best.z)
+        return Look(hypothesis, z, best.cost, best.residuals, best.start)
+
+    def _best_whole(self, looks: Sequence[tuple[Look, Starts]]) -> Look | None:
+        """The best with all trials run, those that were left out only for looks that are the best as far as is known.
+
+        looks : cheapest first
+        """
+        known: list[Look] = []
+        for look, group in looks:
+            if known and min(item.cost for item in known) <= look.cost:
+                break
+            whole = self._whole(look, group)
+            known += [] if whole is None else [whole]
+        return min(known, key=lambda item: item.cost, default=None)
 
     def _whole(self, look: Look, group: Starts) -> Look | None:
         """With the trials that were left out run too; None where they cannot be."""

@@ -146,3 +146,29 @@ def test_a_trial_with_a_small_part_of_a_change_is_hardly_reached_unless_the_base
     assert hardly_reached(base, base, np.ones(20), parts) == frozenset()
     changed[10:] = 2.0 * np.sqrt(PART)
     assert hardly_reached(changed, base, np.ones(20), parts) == frozenset()
+
+
+def test_of_looks_whose_left_out_trials_fit_worse_than_reckoned_the_next_is_taken(
+    simulator: Simulator, base: Fitted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    screen = screen_from(simulator, base)
+    start = Hypothesis(base.hypothesis.factors, (Added(hm.RotorUnbalance(unbalance=1e-6), "rotor_2", "extra"),))
+    promised, real = [10.0, 11.0, 20.0], {10.0: 50.0, 11.0: 12.0, 20.0: 20.0}
+    group = screening.Starts([start], [start.start(base.z)], base)
+    looks = [(screening.Look(start, start.start(base.z), cost, base.residuals, start), group) for cost in promised]
+    asked: list[float] = []
+
+    def whole(look: screening.Look, group: screening.Starts) -> screening.Look | None:
+        asked.append(look.cost)
+        cost = real[look.cost]
+        return None if np.isnan(cost) else screening.Look(look.hypothesis, look.z, cost, look.residuals, look.start)
+
+    monkeypatch.setattr(screen, "_whole", whole)
+    best = screen._best_whole(looks)
+    assert best is not None
+    assert (best.cost, asked) == (12.0, [10.0, 11.0])
+    real[11.0] = np.nan  # cannot be run
+    best = screen._best_whole(looks)
+    assert best is not None
+    assert best.cost == 20.0
+    assert screen._best_whole([]) is None
