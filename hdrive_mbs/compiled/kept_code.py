@@ -21,7 +21,7 @@ from hdrive_mbs.writing import write_bytes
 FOLDER = "HDRIVE_MBS_CACHE"
 """Environment variable."""
 MOST = 256_000_000
-"""Bytes that are kept; of more the code that has not been used for longest is removed, down to three quarters."""
+"""Bytes that are kept, whenever they are counted: of more the code that was not used for longest is removed, down to three quarters."""
 BETWEEN = 200
 """Pieces of code that a process writes between two counts of what is kept."""
 HASH = 32
@@ -48,11 +48,11 @@ class KeptCode:
 
     def write(self, key: str, code: bytes) -> None:
         """Keep a piece of code; where that cannot be done it is made anew another time."""
-        with contextlib.suppress(FileFormatError):
+        with contextlib.suppress(FileFormatError, OSError):
             write_bytes(self.folder / key, hashlib.sha256(code).digest() + code)
-        if self._written % BETWEEN == 0:
-            self._remove_the_oldest()
-        self._written += 1
+            if self._written % BETWEEN == 0:
+                self._remove_the_oldest()
+            self._written += 1
 
     def _remove_the_oldest(self) -> None:
         found = []

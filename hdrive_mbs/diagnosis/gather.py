@@ -18,7 +18,6 @@ from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.located import Located, bends, located
 from hdrive_mbs.diagnosis.pairs import alone, contenders, joined, moved, swapped
-from hdrive_mbs.diagnosis.reach import Trials
 from hdrive_mbs.diagnosis.search import Depth, Report, Search, fit_nominal, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import suspects
@@ -110,10 +109,12 @@ def _placed(coarse: Simulator, fine: Simulator, factors: Sequence[Factor]) -> Lo
     return located(fine, nominal)
 
 
-def _unseen(simulator: Simulator, fitted: Fitted) -> tuple[Trials, ...]:
-    """Of each coordinate the trials in which it does not show."""
+def _unseen(simulator: Simulator, fitted: Fitted) -> dict[str, set[str]]:
+    """By name of each nominal parameter the names of the trials in which it does not show."""
     columns = jacobian(simulator, fitted.hypothesis, fitted.z, fitted.residuals)
-    return unseen_in(simulator, fitted.hypothesis, fitted.z, fitted.residuals, columns)
+    found = unseen_in(simulator, fitted.hypothesis, fitted.z, fitted.residuals, columns)
+    pairs = zip(fitted.hypothesis.factors, found, strict=True)
+    return {factor.name: {simulator.trials[k].name for k in trials} for factor, trials in pairs}
 
 
 def _there(
@@ -190,7 +191,7 @@ def gather(
     """
     said = report or (lambda stage, done, total: None)
     null, place = _begun(team, coarse, fine, factors, said)
-    unseen = dict(zip((item.name for item in factors), _unseen(coarse, null), strict=True))
+    unseen = _unseen(coarse, null)
     coarse, fine = coarse.knowing(unseen), fine.knowing(unseen)
     single = search(team, coarse, null, groups, tried, report=said)
     there = _there(team, coarse, null, single, place, tried, said)

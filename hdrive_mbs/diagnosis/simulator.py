@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import itertools
 from collections import OrderedDict
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -113,10 +113,12 @@ class Simulator:
         ends = np.cumsum([0, *counts])
         return tuple(slice(int(a), int(b)) for a, b in itertools.pairwise(ends))
 
-    def knowing(self, unseen: Mapping[str, Skipped]) -> Simulator:
-        """The same one, told in which trials changes are not believed to show; fits check it."""
+    def knowing(self, unseen: Mapping[str, Collection[str]]) -> Simulator:
+        """The same one, told in which trials, by name, a nominal parameter is not believed to show; fits check it."""
         other = copy.copy(self)
-        other.unseen = dict(unseen)
+        other.unseen = {
+            name: frozenset(k for k, trial in enumerate(self.trials) if trial.name in trials) for name, trials in unseen.items()
+        }
         other._forget()
         return other
 

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 
+from hdrive_mbs.diagnosis.diagnose import factors_of
+from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.robust import Blocks
 from hdrive_mbs.diagnosis.scans import FITTED, POINTS, WIDE, fits_from, scan, worth_a_scan
+from hdrive_mbs.diagnosis.search import search
+from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import Suspect, suspects
 from hdrive_mbs.diagnosis.tasks import NEAR, run_task
+from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
+from tests.unit.diagnosis_cases import bench as bench_of_a_drive
+from tests.unit.diagnosis_cases import quiet
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -85,3 +93,18 @@ def test_what_cannot_be_run_is_left_out_and_no_more_than_the_best_are_fitted() -
     assert scan(flat, some[0]) is None  # type: ignore[arg-type]
     assert len(fits_from([(some[0], look), (some[1], None)])) == 1
     assert len(fits_from([(some[0], look)] * 5)) == FITTED
+
+
+@pytest.mark.parametrize("left", [1.5, 2.0 * NEAR])
+def test_a_search_scans_parameters_where_the_nominal_model_is_far_off_and_only_there(left: float) -> None:
+    """Said by what it reports; the mean square that is left is given."""
+    bench = bench_of_a_drive()
+    simulator = Simulator(bench.trials(quiet()[0]), 2.5e-4, 8)
+    hypothesis = Hypothesis(factors_of(bench))
+    base = dataclasses.replace(fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=1), chi_fit=left)
+    said: list[str] = []
+    groups = {item.name: (item.name,) for item in hypothesis.factors[:2]}
+    with Team(1) as team:
+        search(team, simulator, base, groups, [], report=lambda stage, done, total: said.append(stage))
+    assert ("trying parameters along their range" in said) == (left > NEAR)
+    assert "looking at candidates" in said

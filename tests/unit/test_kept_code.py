@@ -121,3 +121,17 @@ def test_what_was_not_used_for_longest_is_removed_first(tmp_path: Path, monkeypa
     store.write("10", bytes(100))
     assert {path.name for path in tmp_path.iterdir()} == {"0", "5", "6", "7", "8", "9", "10"}  # three quarters of ten, at most
     assert store.read("1") is None
+
+
+def test_a_folder_that_is_lost_while_it_is_used_stops_nothing(tmp_path: Path) -> None:
+    """Its place taken by a file, it can be neither read, written nor counted."""
+    store = KeptCode(tmp_path / "code")
+    store.write("a", bytes(10))
+    assert store.read("a") == bytes(10)
+    (tmp_path / "code" / "a").unlink()
+    (tmp_path / "code").rmdir()
+    (tmp_path / "code").write_text("in the way")
+    store.write("a", bytes(10))
+    store._written = 0  # counts next
+    store.write("a", bytes(10))
+    assert store.read("a") is None

@@ -85,8 +85,11 @@ def test_a_belief_about_one_alone_or_about_all_trials_saves_nothing_and_is_not_a
 
 def test_a_fit_with_beliefs_ends_where_one_without_does(simulator: Simulator, base: Fitted, columns: np.ndarray) -> None:
     unseen = unseen_in(simulator, base.hypothesis, base.z, base.residuals, columns)
-    told = simulator.knowing(dict(zip(NAMES, unseen, strict=True)))
+    names = {name: {simulator.trials[k].name for k in trials} for name, trials in zip(NAMES, unseen, strict=True)}
+    told = simulator.knowing(names)
     assert believed(told, base.hypothesis) == list(unseen)
+    turned = Simulator(simulator.trials[::-1], simulator.step, simulator.every).knowing(names)  # in another order, other numbers
+    assert believed(turned, base.hypothesis) == [frozenset(1 - k for k in trials) for trials in unseen]
     assert believed(simulator, base.hypothesis) == [frozenset()] * len(NAMES)
     first, second = (fit(one, base.hypothesis, base.z, share=1e-7) for one in (simulator, told))
     assert second.cost == pytest.approx(first.cost, abs=0.2)  # what ends a fit
