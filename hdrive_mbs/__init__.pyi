@@ -187,6 +187,7 @@ from hdrive_mbs.effects.shaft_bow import ShaftBow as ShaftBow
 from hdrive_mbs.effects.shaft_kink import ShaftKink as ShaftKink
 from hdrive_mbs.effects.shaft_stiffness_asymmetry import ShaftStiffnessAsymmetry as ShaftStiffnessAsymmetry
 from hdrive_mbs.effects.spread_slip_hysteresis import SpreadSlipHysteresis as SpreadSlipHysteresis
+from hdrive_mbs.effects.steep_crack import SteepCrack as SteepCrack
 from hdrive_mbs.effects.stiffness_asymmetry import StiffnessAsymmetry as StiffnessAsymmetry
 from hdrive_mbs.effects.stiffness_variation import StiffnessVariation as StiffnessVariation
 from hdrive_mbs.effects.supply_sag import SupplySag as SupplySag
@@ -196,6 +197,7 @@ from hdrive_mbs.effects.support_mass_change import SupportMassChange as SupportM
 from hdrive_mbs.effects.support_stiffness_change import SupportStiffnessChange as SupportStiffnessChange
 from hdrive_mbs.effects.thermal_drift import ThermalDrift as ThermalDrift
 from hdrive_mbs.effects.torque_ripple import TorqueRipple as TorqueRipple
+from hdrive_mbs.effects.varying_oil_whirl import VaryingOilWhirl as VaryingOilWhirl
 from hdrive_mbs.effects.viscous_drag import ViscousDrag as ViscousDrag
 from hdrive_mbs.effects.whole_shaft_effect import WholeShaftEffect as WholeShaftEffect
 from hdrive_mbs.engine.assembly import LoweringWarning as LoweringWarning

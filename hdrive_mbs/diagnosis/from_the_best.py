@@ -55,9 +55,9 @@ def unfinished(found: Sequence[Found]) -> list[tuple[Suspect, Task]]:
     return [(item.suspect, further(item.fitted)) for item in best if not item.fitted.converged and not beyond(item.fitted, best[0].fitted)]
 
 
-def other_laws(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect], least: float) -> list[tuple[Suspect, Task]]:
-    """Laws of the best label that were not fitted yet, where the best leaves something: with its values in fields of the same name."""
-    if not found or found[0].suspect.law == PARAMETER or found[0].fitted.chi_fit < least:
+def other_laws(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:
+    """Laws of the best label that were not fitted yet, with the values of the best in fields of the same name."""
+    if not found or found[0].suspect.law == PARAMETER:
         return []
     best, known = found[0].fitted, {(item.suspect.label, item.suspect.law) for item in found}
     values = best.hypothesis.rescaled(best.z)[0].added[-1].effect

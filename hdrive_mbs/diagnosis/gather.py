@@ -24,7 +24,7 @@ from hdrive_mbs.diagnosis.suspects import suspects
 from hdrive_mbs.diagnosis.tasks import Found, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
-from hdrive_mbs.diagnosis.verdict import left
+from hdrive_mbs.diagnosis.verdict import TIED, left
 from hdrive_mbs.errors import AnalysisError
 
 LEFT = 1.1
@@ -38,6 +38,8 @@ SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 """Of the search for a second cause."""
 SINGLES = 3
 """Labels that are fitted on all samples."""
+CLOSE = 0.02
+"""Share of the best law's log odds within which another law of the same cause is fitted on all samples too."""
 JOINED = 3
 """Other single causes that the best one is joined with, besides the best at the place of the gap."""
 
@@ -68,6 +70,17 @@ def wants_second(null: Fitted, first: Found, samples: int) -> bool:
     samples : fitted ones; noise alone costs half of their number
     """
     return first.log_odds > TAKEN * max(null.cost - 0.5 * samples, 0.0) and left(first.fitted) > enough(null, LEFT)
+
+
+def close_laws(found: Sequence[Found]) -> tuple[Found, ...]:
+    """The next law of the best label, if the search could hardly tell it from the best: all samples may.
+
+    found : fitted laws, best first
+    """
+    if not found:
+        return ()
+    least = found[0].log_odds - max(TIED, CLOSE * found[0].log_odds)
+    return tuple(item for item in found[1:] if item.suspect.label == found[0].suspect.label and item.log_odds > least)[:1]
 
 
 def _with(search_: Search, more: Sequence[Found]) -> Search:
@@ -200,7 +213,7 @@ def gather(
     single = _with(single, others)
     if double and not wants_second(null, single.found[0], int(np.count_nonzero(coarse.fit))):
         double = ()  # its second cause stood beside a wrong first one: had it been found at once, no other would have been looked for
-    serious = single.labels[:SINGLES]
+    serious = (*single.labels[:SINGLES], *close_laws(single.found))
     last = on_all_samples(team, fine, null, [item.fitted for item in (*serious, *double)], place, partial(said, "all samples"))
     final = [
         None if fitted is None else scored(Found(item.suspect, fitted), last.refitted)

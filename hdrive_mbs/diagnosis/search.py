@@ -25,6 +25,7 @@ from hdrive_mbs.diagnosis.suspects import Label, Suspect, simplest, suspects
 from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, NEAR, Found, Task, cheapest, further, run_task, scored, those_that_ran
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
+from hdrive_mbs.diagnosis.verdict import ODDS, left, stands
 from hdrive_mbs.errors import AnalysisError
 
 Report = Callable[[str, int, int], None]
@@ -127,7 +128,8 @@ def search(
         more, _ = work.from_ground(held(simulator, base), base, [item for item in everything if item.label in likely or item.is_periodic])
         found = cheapest([*found, *more])
     if how.laws > 1 or (found and found[0].fitted.chi_fit > FAR):
-        found = cheapest([*found, *work.fitted(other_laws(found, base, everything, enough(base, ENOUGH)), "trying other laws of the best")])
+        other = other_laws(found, base, everything) if is_inexact(found, base) else []
+        found = cheapest([*found, *work.fitted(other, "trying other laws of the best")])
         moved = elsewhere(found[0] if found else None, base, everything) + (restarts(found, FAR) if how.laws > 1 and how.again else [])
         found = cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
         found = cheapest([*found, *work.fitted(unfinished(found), "fitting the best")])
@@ -135,6 +137,14 @@ def search(
         found = cheapest([*found, *work.fitted(bent(base, everything), "fitting parameters that the nominal model has bent")])
     final = sorted((scored(item, base) for item in found), key=lambda item: -item.log_odds)
     return Search(base=base, found=tuple(final), looks=looks)
+
+
+def is_inexact(found: Sequence[Found], base: Fitted) -> bool:
+    """Whether the best law leaves something, or so much of a faint gap that it would not be claimed although it shows."""
+    if not found:
+        return False
+    shows = scored(found[0], base).log_odds > ODDS and not stands(found[0], left(base))
+    return shows or found[0].fitted.chi_fit >= enough(base, ENOUGH)
 
 
 @dataclass(frozen=True, eq=False)

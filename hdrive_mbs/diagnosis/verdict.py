@@ -88,9 +88,9 @@ def judge(null_misfit: float, found: Sequence[Found], pairs: Sequence[Found] = (
     chosen = best
     if pairs and _needed(best, pairs[0]):
         chosen = pairs[0]
-    stands = _stands(chosen, null_misfit) or 1.0 - left(best.fitted) / null_misfit >= LARGE
-    probabilities = _probabilities(found, chosen, null_misfit, stands)
-    if not stands:
+    holds = stands(chosen, null_misfit) or 1.0 - left(best.fitted) / null_misfit >= LARGE
+    probabilities = _probabilities(found, chosen, null_misfit, holds)
+    if not holds:
         return Claim("unknown", chosen, (), probabilities)
     alike = [(item, [item.suspect.label]) for item in singles] if chosen is best else [(item, _parts(item, found)) for item in pairs]
     return Claim(kind_of(chosen), chosen, _tied(chosen, alike), probabilities)
@@ -124,7 +124,7 @@ def _excess(found: Found, null_misfit: float) -> float:
     return found.log_odds - ODDS if shows else min(found.log_odds - ODDS, -TEMPERATURE)
 
 
-def _stands(found: Found, null_misfit: float) -> bool:
+def stands(found: Found, null_misfit: float) -> bool:
     """Whether a claim takes enough of the misfit away to be one."""
     after = left(found.fitted)
     if not explains(null_misfit, after):

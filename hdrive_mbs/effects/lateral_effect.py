@@ -18,6 +18,8 @@ from hdrive_mbs.network.station import Station
 
 Stretches = dict[str, dict[str, float]]
 """Direction -> factors of coordinates."""
+Push = Callable[[Moment, Value, Value, Value, Value, Value, Value, Value], tuple[Value, Value]]
+"""(moment, time, angle, speed, x, y, x_rate, y_rate) -> force in x and y."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,16 +54,21 @@ class LateralEffect(Effect):
         """Torque on the spin in the true sense [N m], from the ground; None for none."""
         return None
 
+    def pushing(self, draft: Draft, stretches: Stretches, name: str) -> Push:
+        """``force`` at a moment.  Override it where the force depends on more than the motion of the place: on states that it adds."""
+        return lambda moment, *across: self.force(*across)
+
     def factor(self, draft: Draft, place: str) -> Callable[[Moment], Value] | None:
         """What force, moments and torque are multiplied by, where that depends on more than the motion of the place; None for 1."""
         return None
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         stretches, factor = stretches_of(self, draft, place), self.factor(draft, place)
+        push = self.pushing(draft, stretches, name)
 
         def forces(moment: Moment, s: Mapping[str, Value], v: Mapping[str, Value]) -> Mapping[str, Value]:
             across = (moment.time, s["phi"], v["phi"], s["x"], s["y"], v["x"], v["y"])
-            found = dict(zip("xy", self.force(*across), strict=True))
+            found = dict(zip("xy", push(moment, *across), strict=True))
             tilting = None
             if "psi" in s:
                 tilting = self.moments(moment.time, s["phi"], v["phi"], s["psi"], s["theta"], v["psi"], v["theta"])

@@ -29,6 +29,9 @@ class MomentCrack(CrackEffect):
     of the shaft may gain or lose a little work.
     """
 
+    cross_share: float = parameter(
+        "1", "e, compliance across over that about the front", default=0.0, low=0.0, high=1.0, typical=(0.0, 0.5)
+    )
     closing_moment: float = parameter("N m", "M_c, moment over which it opens and shuts", above=0.0, high=1e5, typical=(0.3, 200.0))
 
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {**CrackEffect.starts, "closing_moment": (15.0,)}

@@ -17,6 +17,7 @@ from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Body, Channel
 from hdrive_mbs.network.node import Node
 from hdrive_mbs.network.rigid_mass import RigidMass
+from hdrive_mbs.network.running_rate import RunningRate
 from hdrive_mbs.network.station import Station, coordinate_names
 from hdrive_mbs.network.stretch_rate import RateOver, stretch_rate
 
@@ -144,6 +145,10 @@ class DraftRotorLine(DraftTorsion):
     def add_stretch_state(self, name: str, of: str, stretches: Mapping[str, Mapping[str, float]], rate: RateOver, *, unit: str) -> str:
         """A first-order state that begins at zero, dz/dt = rate(moment, stretches, their rates), of the coupling of that name."""
         return self._with_state(name, unit, 0.0, lambda unique: stretch_rate(unique, of, stretches, rate))
+
+    def add_running_state(self, name: str, *, unit: str, rate: Callable[[Moment], Value]) -> str:
+        """A first-order state that begins at zero and goes on with the rotation, dz/dt = rate(moment); for excitations alone."""
+        return self._with_state(name, unit, 0.0, lambda unique: RunningRate(unique, rate))
 
     @property
     def gravity(self) -> tuple[float, float, float]:

@@ -15,6 +15,7 @@ from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.rigid_mass import RigidMass
 from hdrive_mbs.network.rigid_motion import forces_of_motion, kinetic_energy, mass_matrix
+from hdrive_mbs.network.running_rate import RunningRate
 from hdrive_mbs.network.stretch_rate import StretchRate
 
 
@@ -203,12 +204,12 @@ class Network:
         """The torsional network alone: what turns, and the elements and states that touch nothing else."""
         if not self.is_lateral:
             return self
-        following = {element.state for element in self.elements if isinstance(element, StretchRate)}
+        moving = {element.state for element in self.elements if isinstance(element, StretchRate | RunningRate)}
         lateral = {body.name for body in self.bodies if body.lateral}
         lateral |= {name for rotor in self.rotors for name in rotor.coordinates[:5]}
         kept = tuple(element for element in self.elements if not _touches(element, lateral))
         bodies = tuple(body for body in self.bodies if not body.lateral)
-        states = tuple(state for state in self.states if state.name not in following)
+        states = tuple(state for state in self.states if state.name not in moving)
         return replace(self, bodies=bodies, states=states, elements=kept, rotors=(), channels=())
 
     @property
@@ -260,4 +261,4 @@ def _touches(element: Element, lateral: set[str]) -> bool:
         return not lateral.isdisjoint(names)
     if isinstance(element, AppliedTorque):
         return element.coordinate in lateral
-    return isinstance(element, StretchRate) or not isinstance(element, StateRate)
+    return isinstance(element, StretchRate | RunningRate) or not isinstance(element, StateRate)

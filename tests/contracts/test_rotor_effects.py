@@ -41,6 +41,9 @@ EXAMPLES = {
         Example(hm.LoadedMisalignment(once=20.0, twice=30.0, thrice=10.0, growth=0.1, lever=0.05), "left", ("once", "twice", "thrice")),
         Example(hm.OilWhirl(amplitude=50.0, phase=0.2, growth=1.5, reference_speed=20.0, onset=5.0), "left", ("amplitude",)),
         Example(hm.OilWhirlOnset(amplitude=50.0, phase=0.2, onset=5.0), "left", ("amplitude",)),
+        Example(
+            hm.VaryingOilWhirl(amplitude=50.0, phase=0.2, growth=1.5, slope=0.3, reference_speed=20.0, onset=5.0), "left", ("amplitude",)
+        ),
         Example(hm.BallPass(amplitude=50.0, order=3.57, phase=0.2, growth=0.5, reference_speed=20.0), "left", ("amplitude",)),
         Example(hm.InnerRacePass(amplitude=50.0, order=5.43, phase=0.2), "left", ("amplitude",)),
         Example(hm.InnerRacePulses(amplitude=50.0, mean=40.0, order=5.43, phase=0.2), "left", ("amplitude", "mean")),
@@ -73,6 +76,7 @@ EXAMPLES = {
         Example(hm.HiddenModeSupport(mass=0.5, natural_frequency=300.0, ratio=1.3, angle=0.4), "left", ("mass",)),
         Example(hm.BreathingCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, steepness=2.0), "first", ("compliance",)),
         Example(hm.MomentCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, closing_moment=3.0), "first", ("compliance",)),
+        Example(hm.SteepCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, steepness=2.0), "first", ("compliance",)),
         Example(hm.PhasedCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, phase=0.7), "first", ("compliance",)),
         Example(hm.InternalDamping(time=1e-3), "first", ("time",)),
         Example(hm.RelaxingDamping(time=1e-3, relaxation_time=2e-3), "first", ("time",)),
@@ -327,7 +331,7 @@ def _response(scene: hm.Scene) -> np.ndarray:
     speeds = {body.name: float(rng.normal(0.0, 1e-3 if body.lateral else 30.0)) for body in network.bodies}
     moment = network.moment(0.0152, places, speeds, {state.name: 0.0 for state in network.states})
     found = network.accelerations(moment)
-    return np.array([*map(float, found.values()), *(float(c.read(moment)) for c in network.channels if c.reads)])
+    return np.array([*(float(found[body.name]) for body in network.bodies), *(float(c.read(moment)) for c in network.channels if c.reads)])
 
 
 def test_its_starts_are_values_of_its_fields(example: Example) -> None:

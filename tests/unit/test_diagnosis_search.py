@@ -21,7 +21,7 @@ from hdrive_mbs.diagnosis.diagnose import factors_of, strongest_first
 from hdrive_mbs.diagnosis.differences import jacobian
 from hdrive_mbs.diagnosis.fit import Fitted, fit, secant
 from hdrive_mbs.diagnosis.from_the_best import bent, other_laws, unfinished
-from hdrive_mbs.diagnosis.gather import wants_second
+from hdrive_mbs.diagnosis.gather import close_laws, wants_second
 from hdrive_mbs.diagnosis.ground import held, screen_from
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
@@ -30,7 +30,7 @@ from hdrive_mbs.diagnosis.normal_equations import STRETCH, normal_equations
 from hdrive_mbs.diagnosis.pairs import alone, contenders, moved
 from hdrive_mbs.diagnosis.result import Cause, Place
 from hdrive_mbs.diagnosis.screening import FAINTEST, Look, Screen, Starts
-from hdrive_mbs.diagnosis.search import ENOUGH, Search, fit_nominal, search
+from hdrive_mbs.diagnosis.search import ENOUGH, Search, fit_nominal, is_inexact, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, simplest, suspects
 from hdrive_mbs.diagnosis.tasks import FIRST, Found, Task, run_task
@@ -421,7 +421,7 @@ def test_other_laws_of_the_best_label_begin_with_its_values(simulator: Simulator
     fitted = dataclasses.replace(fit(simulator, hypothesis, hypothesis.start(), steps=0), chi_fit=2.0, converged=False)
     dahl = Found(Suspect(("friction", "load"), "DahlFriction", (hypothesis,), (hypothesis,)), fitted)
     base = left_with(simulator, cost=1.0, chi_fit=5.0)
-    asked = other_laws([dahl], base, everything, 1.1)
+    asked = other_laws([dahl], base, everything)
     assert {suspect.label for suspect, _ in asked} == {("friction", "load")}
     assert {suspect.law for suspect, _ in asked} == {"PreslidingFriction", "CoulombStribeckFriction"}
     for suspect, task in asked:
@@ -430,7 +430,8 @@ def test_other_laws_of_the_best_label_begin_with_its_values(simulator: Simulator
         if suspect.law == "PreslidingFriction":
             assert values["presliding"] == pytest.approx(2e-3)
             assert values["exponent"] == pytest.approx(1.6)
-    assert other_laws([dahl], base, everything, 2.1) == []  # leaves nothing that is worth it
+    parameter = dataclasses.replace(dahl, suspect=dataclasses.replace(dahl.suspect, law="parameter"))
+    assert other_laws([parameter], base, everything) == []
     assert [item.hypothesis for _, item in unfinished([dahl])] == [hypothesis]
     assert unfinished([dataclasses.replace(dahl, fitted=dataclasses.replace(fitted, converged=True))]) == []
 
@@ -501,6 +502,44 @@ def left_with(simulator: Simulator, *, cost: float, chi_fit: float) -> Fitted:
 )
 def test_a_law_is_hopeless_beside_one_that_is_near(simulator: Simulator, leading: float, other: float, hopeless: bool) -> None:
     assert beyond(left_with(simulator, cost=1.0, chi_fit=other), left_with(simulator, cost=1.0, chi_fit=leading)) is hopeless
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "gain", "inexact"),
+    [
+        (5.0, 2.0, 1e4, True),  # leaves much
+        (5.0, 1.05, 1e4, False),
+        (1.013, 1.0077, 100.0, True),  # of a faint gap more than half, in logarithms
+        (1.013, 1.0077, 10.0, False),  # what does not show has no other law
+        (1.013, 1.0035, 100.0, False),  # noise
+    ],
+)
+def test_other_laws_are_tried_where_the_best_would_not_be_claimed(
+    simulator: Simulator, before: float, after: float, gain: float, inexact: bool
+) -> None:
+    base = left_with(simulator, cost=1e5, chi_fit=before)
+    hypothesis = Hypothesis(factors_of(BENCH), (Added(hm.QuadraticDrag(coefficient=1e-7), "motor", "drag"),))
+    fitted = dataclasses.replace(fit(simulator, hypothesis, hypothesis.start(), steps=0), chi_fit=after, chi_held=after)
+    # log odds are the gain but for what the one number that is searched costs, some ten at most
+    fitted = dataclasses.replace(fitted, cost=1e5 - gain)
+    found = Found(Suspect(("drag", "motor"), "QuadraticDrag", (hypothesis,), (hypothesis,)), fitted)
+    assert is_inexact([found], base) is inexact
+    assert not is_inexact([], base)
+
+
+@pytest.mark.parametrize(("best", "other", "close"), [(110.0, 106.0, True), (110.0, 104.0, False), (5000.0, 4910.0, True), (-3.0, -4.0, True)])
+def test_a_law_that_the_search_can_hardly_tell_from_the_best_goes_on_to_all_samples(
+    simulator: Simulator, best: float, other: float, close: bool
+) -> None:
+    hypothesis = Hypothesis(factors_of(BENCH))
+    fitted = fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=0)
+
+    def law(name: str, at: str, odds: float) -> Found:
+        return Found(Suspect(("friction", at), name, (hypothesis,), (hypothesis,)), fitted, odds)
+
+    found = [law("A", "motor", best), law("A", "load", best - 0.1), law("B", "motor", other), law("C", "motor", other - 0.1)]
+    assert [item.suspect.law for item in close_laws(found)] == (["B"] if close else [])
+    assert close_laws([]) == ()
 
 
 @pytest.mark.parametrize(

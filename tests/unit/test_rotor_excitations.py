@@ -85,7 +85,8 @@ def added_forces(scene: hm.Scene, effect: Effect, at: str, moment: Moment | None
     """What an effect adds to the generalised forces of a scene."""
     bare, changed = scene.network(), scene.with_effect(effect, at=at, name="it").network()
     here = random_moment(bare) if moment is None else moment
-    old, new = bare.torques(here), changed.torques(here)
+    states = {state.name: state.initial for state in changed.states} | dict(here.states)
+    old, new = bare.torques(here), changed.torques(dataclasses.replace(here, states=states))
     return {name: float(new[name] - old[name]) for name in old}, here
 
 
@@ -420,11 +421,46 @@ def test_a_whirl_that_sets_in_is_one_that_is_always_there_far_above_its_threshol
     )
 
 
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_whirl_of_varying_share_turns_with_the_share_of_its_speed(sense: float) -> None:
+    speed, damping = 0.8 * CRITICAL * sense, 200.0
+    law = hm.VaryingOilWhirl(amplitude=10.0, phase=0.3, ratio=0.45, slope=0.06, reference_speed=100.0, onset=50.0, onset_width=10.0)
+    response = hm.simulate(damped_disc(damping).with_effect(law, at="bearing"), 0.9, solver=hm.RungeKutta4(step=2e-4), initial_speed=speed)
+    times, z = response.times[-500:], z_of(response, "disc")[-500:]
+    share = 0.45 + 0.06 * (abs(speed) / 100.0 - 1.0)
+    nu = share * speed  # far above the onset: all of the amplitude
+    wanted = 10.0 * np.exp(1j * (nu * times + 0.3)) / complex(STIFFNESS - MASS * nu**2, damping * nu)
+    np.testing.assert_allclose(z, wanted, rtol=0.0, atol=1e-4 * np.abs(wanted[0]))
+
+
+def test_the_angle_of_a_whirl_of_varying_share_is_the_integral_over_the_run() -> None:
+    # w = b t:  d = s (b^2 t^3/(3 w_0) - b t^2/2)
+    law = hm.VaryingOilWhirl(amplitude=0.0, slope=0.03, reference_speed=150.0, onset=50.0)
+    scene = jeffcott(constant(3.0), support(damping=100.0), eccentricity=0.0).with_effect(law, at="bearing", name="film")
+    response = hm.simulate(scene, 1.0, solver=hm.RungeKutta4(step=1e-3))
+    t, speed = response.times, response["disc.speed"].values
+    b = float(speed[-1] / t[-1])
+    np.testing.assert_allclose(speed, b * t, rtol=1e-9, atol=1e-9)
+    wanted = 0.03 * (b**2 * t**3 / (3.0 * 150.0) - 0.5 * b * t**2)
+    assert np.max(np.abs(wanted)) > 1.0
+    np.testing.assert_allclose(response["film.drift"].values, wanted, rtol=0.0, atol=1e-9 * np.max(np.abs(wanted)))
+
+
+def test_a_whirl_whose_share_does_not_vary_is_one_that_sets_in() -> None:
+    scene, same = damped_disc(100.0), {"amplitude": 10.0, "phase": 0.3, "ratio": 0.46, "onset": 150.0, "onset_width": 30.0}
+    laws = (hm.OilWhirlOnset(**same), hm.VaryingOilWhirl(**same))
+    runs = [
+        hm.simulate(scene.with_effect(law, at="bearing"), 0.3, solver=hm.RungeKutta4(step=5e-4), initial_speed=200.0) for law in laws
+    ]
+    np.testing.assert_allclose(z_of(runs[1], "disc"), z_of(runs[0], "disc"), rtol=0.0, atol=1e-12 * np.max(np.abs(z_of(runs[0], "disc"))))
+
+
 @pytest.mark.parametrize(
     "effect",
     [
         hm.OilWhirl(amplitude=10.0),
         hm.OilWhirlOnset(amplitude=10.0, onset=200.0),
+        hm.VaryingOilWhirl(amplitude=10.0, onset=200.0, slope=0.02),
         hm.BallPass(amplitude=10.0, order=3.57, direction=0.3),
         hm.InnerRacePass(amplitude=10.0, order=5.4, direction=0.3),
         hm.InnerRacePulses(amplitude=10.0, order=5.4, direction=0.3),
@@ -615,6 +651,7 @@ EXCITATIONS: Mapping[str, tuple[Effect, str]] = {
         (hm.Misalignment(once=50.0, twice=100.0, thrice=20.0, lever=0.05), "bearing_1"),
         (hm.OilWhirl(amplitude=100.0, growth=1.5, onset=200.0), "bearing_1"),
         (hm.OilWhirlOnset(amplitude=100.0, onset=100.0), "bearing_1"),
+        (hm.VaryingOilWhirl(amplitude=100.0, onset=100.0, slope=0.02), "bearing_1"),
         (hm.BallPass(amplitude=50.0, order=3.57, growth=1.5), "bearing_2"),
         (hm.InnerRacePass(amplitude=50.0, order=5.43), "bearing_2"),
         (hm.InnerRacePulses(amplitude=50.0, order=5.43), "bearing_2"),

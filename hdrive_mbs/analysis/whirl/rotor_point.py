@@ -53,10 +53,11 @@ def rotor_point(scene: Scene, speed: float, *, lines: LineMatrices | None = None
     at_rest = dict.fromkeys(names, 0.0)
 
     following = FollowingStates(network)
+    held = {state.name: state.initial for state in network.states} | dict(twist.states)
 
     def state(q: FloatArray) -> tuple[dict[str, float], dict[str, float], Mapping[str, float]]:
         placed, moving = {**angles, **dict(zip(names, q.tolist(), strict=True))}, {**speeds, **at_rest}
-        return placed, moving, {**twist.states, **following.at_rest(placed, moving, twist.states)} if following else twist.states
+        return placed, moving, {**held, **following.at_rest(placed, moving, held)} if following else held
 
     def unbalanced(q: FloatArray) -> FloatArray:
         return lines.forces(*state(q))[lateral]
