@@ -188,6 +188,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.oil_whirl": ("OilWhirl",),
     "effects.oil_whirl_onset": ("OilWhirlOnset",),
     "effects.varying_oil_whirl": ("VaryingOilWhirl",),
+    "effects.oil_whirl_cycle": ("OilWhirlCycle",),
     "effects.ball_pass": ("BallPass",),
     "effects.ball_pass_harmonics": ("BallPassHarmonics",),
     "effects.inner_race_pass": ("InnerRacePass",),

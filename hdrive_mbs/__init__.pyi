@@ -159,6 +159,7 @@ from hdrive_mbs.effects.moment_crack import MomentCrack as MomentCrack
 from hdrive_mbs.effects.motor_effect import MotorEffect as MotorEffect
 from hdrive_mbs.effects.motor_scale import MotorScale as MotorScale
 from hdrive_mbs.effects.oil_whirl import OilWhirl as OilWhirl
+from hdrive_mbs.effects.oil_whirl_cycle import OilWhirlCycle as OilWhirlCycle
 from hdrive_mbs.effects.oil_whirl_onset import OilWhirlOnset as OilWhirlOnset
 from hdrive_mbs.effects.one_sided_stiffness import OneSidedStiffness as OneSidedStiffness
 from hdrive_mbs.effects.phased_crack import PhasedCrack as PhasedCrack

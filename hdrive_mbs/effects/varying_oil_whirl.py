@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
-
+from hdrive_mbs.effects.drifting_share import add_drift
 from hdrive_mbs.effects.lateral_effect import Push, Stretches
 from hdrive_mbs.effects.oil_whirl import OilWhirl
 from hdrive_mbs.expression import Value
@@ -25,8 +24,8 @@ class VaryingOilWhirl(OilWhirl):
     with the spin angle f of the ring.  d is a state that begins at 0 and runs on, ``<effect>.drift``; all else as in OilWhirl.
 
     Source: the mean speed of a film over that of the journal depends on how far the journal is out of the centre, and that on the
-    speed (Muszynska, Rotordynamics, 2005, 4.2 and 4.5); the straight line is ours.  Leaves out what OilWhirl does, and that the film
-    goes on from one state to another with a delay.
+    speed (Muszynska, Rotordynamics, 2005, 4.2); the straight line is ours.  Leaves out what OilWhirl does, and that the film
+    goes over from one state to another with a delay (OilWhirlCycle).
     """
 
     growth: float = parameter("1", "n, power of the speed with which it grows", default=0.0, low=0.0, high=4.0, typical=(0.0, 3.0))
@@ -37,17 +36,10 @@ class VaryingOilWhirl(OilWhirl):
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"onset": (250.0, 450.0, 650.0), "growth": (0.0, 2.0), "onset_width": (60.0,)}
     signature: ClassVar[str] = "forward whirl at 0.42 to 0.49 of the speed, a share that changes with the speed, strongest at one bearing"
 
-    def drift_rate(self, speed: Value) -> Value:
-        """d' [rad/s] at a speed [rad/s]."""
-        return self.slope * (np.abs(speed) / self.reference_speed - 1.0) * speed
-
     def pushing(self, draft: Draft, stretches: Stretches, name: str) -> Push:
-        def rate(moment: Moment) -> Value:
-            return self.drift_rate(sum(factor * moment.speed(spin) for spin, factor in stretches["phi"].items()))
-
-        drift = draft.add_running_state(f"{name}.drift", unit="rad", rate=rate)
+        drift = add_drift(draft, stretches, name, self.slope, self.reference_speed)
 
         def push(moment: Moment, time: Value, angle: Value, *across: Value) -> tuple[Value, Value]:
-            return self.force(time, angle + moment.state(drift) / self.ratio, *across)
+            return self.force(time, angle + drift(moment) / self.ratio, *across)
 
         return push

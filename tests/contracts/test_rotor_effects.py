@@ -44,6 +44,7 @@ EXAMPLES = {
         Example(
             hm.VaryingOilWhirl(amplitude=50.0, phase=0.2, growth=1.5, slope=0.3, reference_speed=20.0, onset=5.0), "left", ("amplitude",)
         ),
+        Example(hm.OilWhirlCycle(amplitude=500.0, phase=0.2, slope=0.3, reference_speed=20.0, onset=5.0, seed=0.1), "left", ("amplitude",)),
         Example(hm.BallPass(amplitude=50.0, order=3.57, phase=0.2, growth=0.5, reference_speed=20.0), "left", ("amplitude",)),
         Example(hm.InnerRacePass(amplitude=50.0, order=5.43, phase=0.2), "left", ("amplitude",)),
         Example(hm.InnerRacePulses(amplitude=50.0, mean=40.0, order=5.43, phase=0.2), "left", ("amplitude", "mean")),
@@ -329,7 +330,7 @@ def _response(scene: hm.Scene) -> np.ndarray:
     network, rng = scene.network(), np.random.default_rng(5)
     places = {body.name: float(rng.normal(0.0, 1e-4 if body.lateral else 1.0)) for body in network.bodies}
     speeds = {body.name: float(rng.normal(0.0, 1e-3 if body.lateral else 30.0)) for body in network.bodies}
-    moment = network.moment(0.0152, places, speeds, {state.name: 0.0 for state in network.states})
+    moment = network.moment(0.0152, places, speeds, {state.name: 0.3 for state in network.states})
     found = network.accelerations(moment)
     return np.array([*(float(found[body.name]) for body in network.bodies), *(float(c.read(moment)) for c in network.channels if c.reads)])
 

@@ -527,7 +527,9 @@ def test_other_laws_are_tried_where_the_best_would_not_be_claimed(
     assert not is_inexact([], base)
 
 
-@pytest.mark.parametrize(("best", "other", "close"), [(110.0, 106.0, True), (110.0, 104.0, False), (5000.0, 4910.0, True), (-3.0, -4.0, True)])
+@pytest.mark.parametrize(
+    ("best", "other", "close"), [(110.0, 106.0, True), (110.0, 104.0, False), (5000.0, 4910.0, True), (-3.0, -4.0, True)]
+)
 def test_a_law_that_the_search_can_hardly_tell_from_the_best_goes_on_to_all_samples(
     simulator: Simulator, best: float, other: float, close: bool
 ) -> None:

@@ -446,12 +446,50 @@ def test_the_angle_of_a_whirl_of_varying_share_is_the_integral_over_the_run() ->
     np.testing.assert_allclose(response["film.drift"].values, wanted, rtol=0.0, atol=1e-9 * np.max(np.abs(wanted)))
 
 
+def test_a_whirl_comes_to_the_size_of_its_limit_cycle() -> None:
+    # r' = 0 with c = m tanh((w/w_1 - 1)/m):  r^3 - c r = e; from a small r_0 on, r^2 = c/(1 + (c/r_0^2 - 1) exp(-2 g c t)) for e = 0
+    speed, damping = 260.0, 200.0
+    law = hm.OilWhirlCycle(amplitude=10.0, phase=0.3, ratio=0.45, onset=200.0, rate=40.0, bound=0.5, seed=1e-3)
+    response = hm.simulate(
+        damped_disc(damping).with_effect(law, at="bearing", name="film"),
+        1.5,
+        solver=hm.RungeKutta4(step=2e-4),
+        initial_speed=speed,
+        initial={"film.size": 0.02},
+    )
+    c = 0.5 * math.tanh((speed / 200.0 - 1.0) / 0.5)
+    last = max(np.roots([1.0, 0.0, -c, -1e-3]).real)
+    size, times = response["film.size"].values, response.times
+    assert size[-1] == pytest.approx(last, rel=1e-6)
+    logistic = np.sqrt(c / (1.0 + (c / 0.02**2 - 1.0) * np.exp(-80.0 * c * times)))
+    # e adds e g t to r while it is small, and e/(2 c) to where it ends: e/r_0/c = 0.18 of it in the middle at most
+    assert np.max(np.abs(size / logistic - 1.0)) < 1e-3 / (0.02 * c)
+    nu = 0.45 * speed
+    wanted = last * 10.0 * np.exp(1j * (nu * times[-500:] + 0.3)) / complex(STIFFNESS - MASS * nu**2, damping * nu)
+    np.testing.assert_allclose(z_of(response, "disc")[-500:], wanted, rtol=0.0, atol=1e-4 * np.abs(wanted[0]))
+
+
+def test_a_limit_cycle_follows_a_run_up_as_another_integrator_says() -> None:
+    # w = b t; r' = g (r (c - r^2) + e) of the same speed by scipy's Radau
+    law = hm.OilWhirlCycle(amplitude=0.0, slope=0.03, reference_speed=150.0, onset=120.0, rate=30.0, bound=0.8, seed=2e-3)
+    scene = jeffcott(constant(3.0), support(damping=100.0), eccentricity=0.0).with_effect(law, at="bearing", name="film")
+    response = hm.simulate(scene, 1.0, solver=hm.RungeKutta4(step=5e-4))
+    b = float(response["disc.speed"].values[-1] / response.times[-1])
+    assert b > 240.0
+
+    def rate(t: float, r: np.ndarray) -> np.ndarray:
+        return 30.0 * (r * (0.8 * math.tanh((b * t / 120.0 - 1.0) / 0.8) - r**2) + 2e-3)
+
+    wanted = solve_ivp(rate, (0.0, 1.0), [0.0], method="Radau", t_eval=response.times, rtol=1e-10, atol=1e-12).y[0]
+    np.testing.assert_allclose(response["film.size"].values, wanted, rtol=0.0, atol=1e-8)
+    drift = 0.03 * (b**2 * response.times**3 / (3.0 * 150.0) - 0.5 * b * response.times**2)
+    np.testing.assert_allclose(response["film.drift"].values, drift, rtol=0.0, atol=1e-9 * np.max(np.abs(drift)))
+
+
 def test_a_whirl_whose_share_does_not_vary_is_one_that_sets_in() -> None:
     scene, same = damped_disc(100.0), {"amplitude": 10.0, "phase": 0.3, "ratio": 0.46, "onset": 150.0, "onset_width": 30.0}
     laws = (hm.OilWhirlOnset(**same), hm.VaryingOilWhirl(**same))
-    runs = [
-        hm.simulate(scene.with_effect(law, at="bearing"), 0.3, solver=hm.RungeKutta4(step=5e-4), initial_speed=200.0) for law in laws
-    ]
+    runs = [hm.simulate(scene.with_effect(law, at="bearing"), 0.3, solver=hm.RungeKutta4(step=5e-4), initial_speed=200.0) for law in laws]
     np.testing.assert_allclose(z_of(runs[1], "disc"), z_of(runs[0], "disc"), rtol=0.0, atol=1e-12 * np.max(np.abs(z_of(runs[0], "disc"))))
 
 
@@ -651,6 +689,7 @@ EXCITATIONS: Mapping[str, tuple[Effect, str]] = {
         (hm.Misalignment(once=50.0, twice=100.0, thrice=20.0, lever=0.05), "bearing_1"),
         (hm.OilWhirl(amplitude=100.0, growth=1.5, onset=200.0), "bearing_1"),
         (hm.OilWhirlOnset(amplitude=100.0, onset=100.0), "bearing_1"),
+        (hm.OilWhirlCycle(amplitude=100.0, onset=100.0, slope=0.02), "bearing_1"),
         (hm.VaryingOilWhirl(amplitude=100.0, onset=100.0, slope=0.02), "bearing_1"),
         (hm.BallPass(amplitude=50.0, order=3.57, growth=1.5), "bearing_2"),
         (hm.InnerRacePass(amplitude=50.0, order=5.43), "bearing_2"),

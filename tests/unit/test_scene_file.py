@@ -167,6 +167,7 @@ ROTOR_EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.LoadedMisalignment(twice=2.0, growth=0.02, lever=0.02), "bearing"),
     (hm.OilWhirl(amplitude=3.0, ratio=0.46, onset=300.0), "bearing"),
     (hm.OilWhirlOnset(amplitude=3.0, ratio=0.46, onset=300.0), "bearing"),
+    (hm.OilWhirlCycle(amplitude=3.0, ratio=0.46, onset=300.0, bound=0.5), "bearing"),
     (hm.VaryingOilWhirl(amplitude=3.0, ratio=0.46, onset=300.0, slope=0.01), "bearing"),
     (hm.BallPass(amplitude=3.0, order=3.57, sharpness=0.3), "bearing"),
     (hm.BallPassHarmonics(amplitude=3.0, order=3.57, second_amplitude=1.0), "bearing"),
