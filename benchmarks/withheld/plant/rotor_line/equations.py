@@ -29,6 +29,9 @@ from benchmarks.withheld.plant.rotor_line.laws import (
     ripple_torque,
     rub_force,
     wander,
+    whirl_growth,
+    whirl_share,
+    whirl_size,
 )
 
 FloatArray = NDArray[np.float64]
@@ -245,17 +248,15 @@ def slope(t, y, torque, hx, hy, M, C, out, s, w, f, r):
         fy += gy
         if C.whirl[0] > 0.0 and int(C.whirl[1]) == b:
             W = C.whirl
-            lam = W[3] + W[4] * (o * 1e-3 - 0.5) + W[6] * wander(0.7 * t + W[7], W[7])
-            if W[0] == 1.0:
+            lam = whirl_share(W, o) + W[6] * wander(0.7 * t + W[7], W[7])
+            if W[0] == 1.0 or W[0] == 4.0:
                 zd[WHIRL] = lam * o
-                x = (o - W[5]) / (0.12 * W[5])
-                size = W[2] * (o * 1e-3) ** 2 / (1.0 + math.exp(-min(max(x, -40.0), 40.0)))
-                size *= 1.0 + 0.3 * wander(1.3 * t + 2.0 * W[7], W[7])
+                size = whirl_size(W, o) * (1.0 + 0.3 * wander(1.3 * t + 2.0 * W[7], W[7]))
                 fx += size * math.cos(z[WHIRL])
                 fy += size * math.sin(z[WHIRL])
             else:
                 a, c = z[SWING], z[SWING + 1]
-                g = W[8] * (min(max(o / W[5] - 1.0, -0.02), 0.6) - (a * a + c * c))  # below its onset it dies slowly
+                g = whirl_growth(W, o, a * a + c * c)
                 zd[SWING] = g * a - lam * o * c + W[9] * (v[k] - v[h])
                 zd[SWING + 1] = g * c + lam * o * a + W[9] * (v[k + 1] - v[h + 1])
                 fx += W[2] * a

@@ -155,7 +155,8 @@ def openness(law, moment, angle, scale):
     """How far a crack is open, 0 to 1.
 
     0 always (an unsymmetric section); 1 by the bending moment across it, 1/2 (1 + tanh(M/scale)); 2 by the angle to the weight
-    with a steepness: 1/2 (1 + tanh(scale cos)/tanh(scale)); 3 the moment clipped to a linear ramp of width scale.
+    with a steepness: 1/2 (1 + tanh(scale cos)/tanh(scale)); 3 the moment clipped to a linear ramp of width scale; 4 by the angle to
+    the weight with a power: (1/2 (1 + cos))^scale.
     """
     if law == 0:
         return 1.0
@@ -163,6 +164,8 @@ def openness(law, moment, angle, scale):
         return 0.5 * (1.0 + math.tanh(moment / scale))
     if law == 2:
         return 0.5 * (1.0 + math.tanh(scale * math.cos(angle)) / math.tanh(scale))
+    if law == 4:
+        return (0.5 * (1.0 + math.cos(angle))) ** scale
     return min(max(0.5 + 0.5 * moment / scale, 0.0), 1.0)
 
 
@@ -199,6 +202,33 @@ def pass_force(row, phase, spin_angle, speed):
     d = spin_angle + row[6]
     loaded = max(0.0, math.cos(d + _POINT_FIVE_PI)) ** 1.5 + row[7]
     return pulse * loaded * math.cos(d), pulse * loaded * math.sin(d)
+
+
+@compiled
+def whirl_share(row, speed):
+    """Share of the spin at which oil whirls, but for its wander: row[3] at 500 rad/s; straight over the speed, for law 4 over its root."""
+    if row[0] == 4.0:
+        return row[3] + row[4] * (math.sqrt(max(speed, 0.0) * 0.002) - 1.0)
+    return row[3] + row[4] * (speed * 1e-3 - 0.5)
+
+
+@compiled
+def whirl_size(row, speed):
+    """Size of an oil whirl that sets in at row[5] without a delay: with the square of the speed and a logistic of width 0.12 row[5], or for
+    law 4 with the power row[9] and h^8/(1 + h^8), h = speed/row[5]."""
+    if row[0] == 4.0:
+        h = (max(speed, 0.0) / row[5]) ** 8
+        return row[2] * (max(speed, 0.0) * 1e-3) ** row[9] * h / (1.0 + h)
+    x = (speed - row[5]) / (0.12 * row[5])
+    return row[2] * (speed * 1e-3) ** 2 / (1.0 + math.exp(-min(max(x, -40.0), 40.0)))
+
+
+@compiled
+def whirl_growth(row, speed, square):
+    """Rate [1/s] at which a limit cycle of that size squared grows: it dies slowly below its onset row[5]; its square bounds it, for law 3
+    its cube."""
+    bound = square * math.sqrt(square) if row[0] == 3.0 else square
+    return row[8] * (min(max(speed / row[5] - 1.0, -0.02), 0.6) - bound)
 
 
 @compiled

@@ -74,7 +74,7 @@ def hammer(record: str, samples: int) -> FloatArray:
 def start_aux(causes: Causes, speed: float, lateral: FloatArray) -> FloatArray:
     """Inner states at the start: relaxation at rest, a whirl that is only a seed, a ball at the bottom that turns with the rotor."""
     aux = np.zeros(STATES - MORE)
-    aux[SWING] = 0.02 if causes.whirl[0] == 2.0 else 0.0
+    aux[SWING] = 0.02 if causes.whirl[0] in (2.0, 3.0) else 0.0
     aux[BALL], aux[BALL_RATE] = -0.5 * np.pi, speed
     aux[RELAX : RELAX + 16] = lateral[:16]
     return aux
