@@ -45,6 +45,13 @@ def held(simulator: Simulator, model: Fitted) -> Fitted:
     return replace(found, hypothesis=model.hypothesis)
 
 
+def is_bent(model: Fitted) -> bool:
+    """Whether a parameter that is not under suspicion is further off than is likely."""
+    hypothesis = model.hypothesis
+    parameters = zip(hypothesis.factors, hypothesis.nominal_part(model.z), strict=True)
+    return any(abs(z) > LIKELY for item, z in parameters if item.name not in hypothesis.loose)
+
+
 def as_known(hypothesis: Hypothesis, z: FloatArray) -> FloatArray:
     """Coordinates with the parameters that are not under suspicion at the values of the data sheet."""
     start = z.copy()

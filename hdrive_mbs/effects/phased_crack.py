@@ -34,6 +34,9 @@ class PhasedCrack(CrackEffect):
         "phase": (0.0, 1.57, 3.14, -1.57),
     }
 
+    decisive: ClassVar[tuple[str, ...]] = ("angle", "phase")
+    leads: ClassVar[bool] = True
+
     def opening(self, moment: Value, cosine: Value, sine: Value, gravity: tuple[float, float]) -> tuple[Value, Value]:
         c, s = math.cos(self.angle + self.phase), math.sin(self.angle + self.phase)
         return 0.5 * (1.0 + c * cosine + s * sine), 0.5 * (s * cosine - c * sine)

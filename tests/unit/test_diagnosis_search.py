@@ -22,7 +22,7 @@ from hdrive_mbs.diagnosis.differences import jacobian
 from hdrive_mbs.diagnosis.fit import Fitted, fit, secant
 from hdrive_mbs.diagnosis.from_the_best import bent, other_laws, unfinished
 from hdrive_mbs.diagnosis.gather import close_laws, wants_second
-from hdrive_mbs.diagnosis.ground import held, screen_from
+from hdrive_mbs.diagnosis.ground import LIKELY, held, is_bent, screen_from
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
 from hdrive_mbs.diagnosis.located import Located, located
@@ -30,7 +30,7 @@ from hdrive_mbs.diagnosis.normal_equations import STRETCH, normal_equations
 from hdrive_mbs.diagnosis.pairs import alone, contenders, moved
 from hdrive_mbs.diagnosis.result import Cause, Place
 from hdrive_mbs.diagnosis.screening import FAINTEST, Look, Screen, Starts
-from hdrive_mbs.diagnosis.search import ENOUGH, Search, fit_nominal, is_inexact, search
+from hdrive_mbs.diagnosis.search import ENOUGH, Depth, Search, _Work, fit_nominal, is_inexact, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, simplest, suspects
 from hdrive_mbs.diagnosis.tasks import FIRST, Found, Task, run_task
@@ -135,6 +135,46 @@ def test_held_parameters_stay_near_the_data_sheet(simulator: Simulator) -> None:
     assert np.max(np.abs(near.z)) == pytest.approx(2.0)
     assert free.cost < near.cost < fit(missing, hypothesis, np.zeros(hypothesis.size), steps=0).cost
     assert near.hypothesis is free.hypothesis
+
+
+def test_a_model_is_bent_where_a_parameter_that_nobody_suspects_is_far_off(simulator: Simulator) -> None:
+    factors = factors_of(BENCH)
+    plain, loose = Hypothesis(factors), Hypothesis(factors, (), {factors[0].name: 10.0})
+    for hypothesis, deviations, bent_ in ((plain, 1.9, False), (plain, 2.1, True), (plain, -2.1, True), (loose, 2.1, False)):
+        start = hypothesis.start(np.eye(len(factors))[0] * deviations)
+        assert is_bent(fit(simulator, hypothesis, start, steps=0)) is bent_
+
+
+@pytest.mark.parametrize(
+    ("off", "taken", "grounds"),
+    [
+        (3.0, 0.5, ["held"]),  # takes half of what there is to take
+        (3.0, 0.1, ["held", "as it is"]),
+        (1.0, 0.1, ["as it is"]),  # nothing is bent
+    ],
+)
+def test_a_second_cause_is_looked_for_from_held_parameters_first_where_the_first_has_bent_them(
+    simulator: Simulator, monkeypatch: pytest.MonkeyPatch, off: float, taken: float, grounds: list[str]
+) -> None:
+    hypothesis = Hypothesis(factors_of(BENCH))
+    noise = 0.5 * int(np.count_nonzero(simulator.fit))
+    base = fit(simulator, hypothesis, hypothesis.start(np.eye(hypothesis.size)[0] * off), steps=0)
+    base = dataclasses.replace(base, chi_fit=2.0, chi_held=2.0, cost=2.0 * noise)
+    better = dataclasses.replace(base, cost=base.cost - taken * noise, chi_fit=1.01, chi_held=1.01, curvature=np.eye(hypothesis.size))
+    seen: list[str] = []
+
+    def from_ground(self: _Work, model: Fitted, base_: Fitted, everything: Sequence[Suspect], known: Sequence[Found] = ()) -> object:
+        assert base_ is base
+        seen.append("as it is" if model is base else "held")
+        assert np.all(np.abs(model.z) <= (off if model is base else LIKELY))
+        return [Found(everything[0], better)], []
+
+    monkeypatch.setattr(_Work, "from_ground", from_ground)
+    monkeypatch.setattr("hdrive_mbs.diagnosis.search.unfinished", lambda found: [])
+    tried = candidates(BENCH.scene, [hm.QuadraticDrag])
+    with Team(1, None) as team:
+        search(team, simulator, base, {}, tried, depth=Depth(laws=1))
+    assert seen == grounds
 
 
 def test_a_second_cause_is_tried_without_the_first(simulator: Simulator) -> None:
