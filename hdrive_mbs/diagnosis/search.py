@@ -115,7 +115,7 @@ def search(
     leave something, the places of their families that were passed over are fitted too.
     Where all of them leave something, the same is done with the likeliest, the parameters held near the values of the data sheet.
     What came out best is then tried with the other laws of its family and at all other places where it may sit, from the values
-    found; in a shallow search only where it leaves much.  A shallow search begins with held parameters where those of the base are bent.
+    found; in a shallow search the latter only where it leaves much.  A shallow search begins with held parameters where those of the base are bent.
 
     begin : of the simulator and a fitted model, what says where laws with a period begin
     """
@@ -129,9 +129,9 @@ def search(
         likely = {suspect.label for suspect, _ in first[:SECOND_LOOKS]}
         more, _ = work.from_ground(held(simulator, base), base, [item for item in everything if item.label in likely or item.is_periodic])
         found = cheapest([*found, *more])
+    other = other_laws(found, base, everything) if is_inexact(found, base) else []
+    found = cheapest([*found, *work.fitted(other, "trying other laws of the best")])
     if how.laws > 1 or (found and found[0].fitted.chi_fit > FAR):
-        other = other_laws(found, base, everything) if is_inexact(found, base) else []
-        found = cheapest([*found, *work.fitted(other, "trying other laws of the best")])
         moved = elsewhere(found[0] if found else None, base, everything) + (restarts(found, FAR) if how.laws > 1 and how.again else [])
         found = cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
         found = cheapest([*found, *work.fitted(unfinished(found), "fitting the best")])
