@@ -115,7 +115,8 @@ def search(
     leave something, the places of their families that were passed over are fitted too.
     Where all of them leave something, the same is done with the likeliest, the parameters held near the values of the data sheet.
     What came out best is then tried with the other laws of its family and at all other places where it may sit, from the values
-    found; in a shallow search the latter only where it leaves much.  A shallow search begins with held parameters where those of the base are bent.
+    found; in a shallow search the latter only where it leaves much.
+    A shallow search begins with held parameters where those of the base are bent.
 
     begin : of the simulator and a fitted model, what says where laws with a period begin
     """
