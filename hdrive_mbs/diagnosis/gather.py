@@ -79,8 +79,10 @@ def close_laws(found: Sequence[Found]) -> tuple[Found, ...]:
     """
     if not found:
         return ()
+    best = found[0].suspect
     least = found[0].log_odds - max(TIED, CLOSE * found[0].log_odds)
-    return tuple(item for item in found[1:] if item.suspect.label == found[0].suspect.label and item.log_odds > least)[:1]
+    others = (item for item in found if item.suspect.label == best.label and item.suspect.law != best.law)
+    return tuple(item for item in others if item.log_odds > least)[:1]
 
 
 def _with(search_: Search, more: Sequence[Found]) -> Search:

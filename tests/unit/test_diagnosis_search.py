@@ -579,7 +579,13 @@ def test_a_law_that_the_search_can_hardly_tell_from_the_best_goes_on_to_all_samp
     def law(name: str, at: str, odds: float) -> Found:
         return Found(Suspect(("friction", at), name, (hypothesis,), (hypothesis,)), fitted, odds)
 
-    found = [law("A", "motor", best), law("A", "load", best - 0.1), law("B", "motor", other), law("C", "motor", other - 0.1)]
+    found = [
+        law("A", "motor", best),
+        law("A", "load", best - 0.1),
+        law("A", "motor", best - 0.2),
+        law("B", "motor", other),
+        law("C", "motor", other - 0.1),
+    ]
     assert [item.suspect.law for item in close_laws(found)] == (["B"] if close else [])
     assert close_laws([]) == ()
 
