@@ -17,8 +17,8 @@ from hdrive_mbs.quantities import is_needed
 
 TOGETHER = 5
 """Joint steps of two causes that are put together."""
-MOVED = 8
-"""Joint steps of a pair with a cause at another place."""
+MOVED, GOING = 8, 4
+"""Joint steps of a pair with a cause at another place, and how many of these pairs take them, the best after the first steps."""
 CONTENDERS, NEARLY = 3, 0.01
 """Pairs that are fitted to the end at most, and share of what a second cause gains by which they may lie behind the best until then."""
 
@@ -108,8 +108,9 @@ def moved(team: Team, simulator: Simulator, pairs: Sequence[Found], tried: Seque
     begun: dict[frozenset[object], Found] = {}
     for item in sorted(those_that_ran(whose, team.map(run_task, simulator, tasks)), key=lambda item: item.fitted.cost):
         begun.setdefault(_causes(item), item)
-    found = [item for item in begun.values() if item.fitted.converged or is_hopeless(item.fitted.chi_fit, best.fitted.chi_fit)]
-    going = [item for item in begun.values() if item not in found]
+    open_ = [item for item in begun.values() if not (item.fitted.converged or is_hopeless(item.fitted.chi_fit, best.fitted.chi_fit))]
+    going = open_[:GOING]
+    found = [item for item in begun.values() if item not in going]
     fits = team.map(run_task, simulator, [further(item.fitted, MOVED - FIRST) for item in going])
     return [*found, *those_that_ran([item.suspect for item in going], fits)]
 
