@@ -197,6 +197,7 @@ ROTOR_EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.HiddenModeSupport(mass=0.1, natural_frequency=300.0), "bearing"),
     (hm.BreathingCrack(compliance=1e-7, position=0.5), "shaft.element_2"),
     (hm.MomentCrack(compliance=1e-7, position=0.5, closing_moment=10.0), "shaft.element_2"),
+    (hm.SteepCrack(compliance=1e-7, position=0.5, steepness=2.0, cross_share=0.2), "shaft.element_2"),
     (hm.PhasedCrack(compliance=1e-7, position=0.5, phase=0.3), "shaft.element_2"),
     (hm.InternalDamping(time=1e-6), "shaft.element_1"),
     (hm.RelaxingDamping(time=1e-6, relaxation_time=1e-3), "shaft.element_1"),
