@@ -17,7 +17,7 @@ from hdrive_mbs.compiled.time_inputs import TimeInput
 from hdrive_mbs.diagnosis.following import following
 from hdrive_mbs.diagnosis.hypothesis import FloatArray, Hypothesis
 from hdrive_mbs.diagnosis.trial import Trial
-from hdrive_mbs.errors import LawError, ParameterError
+from hdrive_mbs.errors import LawError, ParameterError, PlaceError
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.quantities import Described
 from hdrive_mbs.scene import Scene
@@ -188,7 +188,7 @@ def _compiled(network: Network, trial: Trial) -> CompiledLine:
 def _network(hypothesis: Hypothesis, scene: Scene, point: FloatArray) -> Network | None:
     try:
         return hypothesis.scene(scene, point, to_run=True).network()
-    except (ParameterError, LawError):
+    except (ParameterError, LawError, PlaceError):  # PlaceError: a cause found elsewhere that does not go with this place
         return None
 
 

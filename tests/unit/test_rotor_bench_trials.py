@@ -17,6 +17,7 @@ from hdrive_mbs.diagnosis.experiment.plan import Plan
 from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.following import following
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.lines import _network
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
 from models import rotor_bench
@@ -254,3 +255,12 @@ def test_a_plan_that_the_rotor_bench_cannot_run_says_why() -> None:
         bench().planned(Plan(name="a", inputs={"load_torque": course}, duration=1.0, every=rotor_bench.SAMPLE_TIME))
     with pytest.raises(hm.ParameterError, match=r"samples every 0\.00025 s"):
         bench().planned(Plan(name="a", inputs={rotor_bench.SPEED: course}, duration=1.0, every=1e-3))
+
+
+def test_a_cause_that_does_not_go_with_a_place_cannot_be_run_there() -> None:
+    # a half sine between two bearings has no place on the overhang: a search that moves it there goes on without it
+    scene = rotor_bench.undriven("run_up")
+    bow = hm.ShaftBow(amplitude=1e-6, shape="sine")
+    networks = [_network(Hypothesis((), (Added(bow, place, "bow"),)), scene, np.zeros(0)) for place in ("rotor_1", "rotor_2")]
+    assert networks[0] is not None
+    assert networks[1] is None
