@@ -261,6 +261,7 @@ def test_a_cause_that_does_not_go_with_a_place_cannot_be_run_there() -> None:
     # a half sine between two bearings has no place on the overhang: a search that moves it there goes on without it
     scene = rotor_bench.undriven("run_up")
     bow = hm.ShaftBow(amplitude=1e-6, shape="sine")
-    networks = [_network(Hypothesis((), (Added(bow, place, "bow"),)), scene, np.zeros(0)) for place in ("rotor_1", "rotor_2")]
+    tried = [Hypothesis((), (Added(bow, place, "bow"),)) for place in ("rotor_1", "rotor_2")]
+    networks = [_network(hypothesis, scene, hypothesis.start()) for hypothesis in tried]
     assert networks[0] is not None
     assert networks[1] is None
