@@ -171,7 +171,7 @@ class _Work:
         """From a base whose parameters a missing cause has bent first with these held, and from where they are if nothing came out there.
 
         What is missing beside a strong cause shows little from bent parameters.  From held ones its look alone may leave less than the
-        base does: in an open pair (a bow and a cross coupling) it did by a tenth, and from bent ones it was not among the first twenty.
+        base does: in an open pair (a bow and a cross coupling) it did by a tenth, and from bent ones it was not among the first fourteen.
         """
         if not is_bent(base):
             return self.from_ground(base, base, everything)

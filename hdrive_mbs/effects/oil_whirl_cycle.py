@@ -67,7 +67,6 @@ class OilWhirlCycle(LateralEffect):
 
     def pushing(self, draft: Draft, stretches: Stretches, name: str) -> Push:
         drift = add_drift(draft, stretches, name, self.slope, self.reference_speed)
-        # the state is known by its name from its first reading on, after the draft is finished
         size = draft.add_running_state(
             f"{name}.size", unit="1", rate=lambda moment: self.size_rate(moment.state(size), spin_speed(stretches, moment))
         )

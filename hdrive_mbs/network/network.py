@@ -9,10 +9,11 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.expression import Value, gradient
+from hdrive_mbs.errors import LawError
+from hdrive_mbs.expression import Value, gradient, record, variables
 from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, StateRate
 from hdrive_mbs.network.matrix_element import MatrixElement
-from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.moment import Moment, recording_moment
 from hdrive_mbs.network.rigid_mass import RigidMass
 from hdrive_mbs.network.rigid_motion import forces_of_motion, kinetic_energy, mass_matrix
 from hdrive_mbs.network.running_rate import RunningRate
@@ -201,8 +202,12 @@ class Network:
         return any(body.lateral for body in self.bodies)
 
     def turning(self) -> Network:
-        """The torsional network alone: what turns, and the elements and states that touch nothing else."""
-        if not self.is_lateral:
+        """The torsional network alone: what turns, and the elements and states that touch nothing else.
+
+        Raises LawError for a torque that depends on a state which goes on with the rotation (``Draft.add_running_state``).
+        """
+        running = {element.state for element in self.elements if isinstance(element, RunningRate)}
+        if not self.is_lateral and not running:
             return self
         moving = {element.state for element in self.elements if isinstance(element, StretchRate | RunningRate)}
         lateral = {body.name for body in self.bodies if body.lateral}
@@ -210,6 +215,8 @@ class Network:
         kept = tuple(element for element in self.elements if not _touches(element, lateral))
         bodies = tuple(body for body in self.bodies if not body.lateral)
         states = tuple(state for state in self.states if state.name not in moving)
+        if running:
+            _refuse_running(kept, running)
         return replace(self, bodies=bodies, states=states, elements=kept, rotors=(), channels=())
 
     @property
@@ -242,6 +249,21 @@ class Network:
             dict(zip(names, values[1 + n : 1 + 2 * n], strict=True)),
             dict(zip(states, values[1 + 2 * n :], strict=True)),
         )
+
+
+def _refuse_running(elements: Sequence[Element], running: set[str]) -> None:
+    """Raise LawError for an element of a steady network that depends on a state which does not come to rest."""
+    for element in elements:
+        try:
+            found = {name for value in element.contribution(recording_moment()).values() for name in variables(record(value))}
+        except Exception:  # a law that cannot be recorded: whatever it raises, it raises again where it is used
+            continue
+        for name in sorted(found & {f"state:{state}" for state in running}):
+            raise LawError(
+                f"{element.name}: its torque depends on the state {name.removeprefix('state:')!r}, which goes on with the rotation, so that"
+                " nothing stands still where the train turns steadily. Such states (add_running_state) are for forces that shake the line"
+                " (LateralEffect with excites = True); take add_state for one that comes to rest."
+            )
 
 
 def random_values(rng: np.random.Generator, count: int, rows: int) -> list[npt.NDArray[np.float64]]:

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.errors import AnalysisError, HdriveError, ParameterError, PlaceError
+from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import AnalysisError, HdriveError, LawError, ParameterError, PlaceError
 from hdrive_mbs.motors.ideal_speed import IdealSpeedMotor
 from hdrive_mbs.motors.profiles.constant import ConstantSpeed
 from hdrive_mbs.motors.servo import ServoMotor
+from hdrive_mbs.network.draft import Draft
 from models.harmonic_drive_train import build as drive_train
 from models.harmonic_drive_train import motor
 from tests.verification.scenes import LOST_MOTION, catalogue, train
@@ -231,3 +234,25 @@ def test_friction_in_the_mesh_is_carried_by_the_motor_and_does_not_hold_the_trai
     # asked at a speed, the motor's balance does not count
     asked = hm.operating_point(drive_train().with_effect(friction, at="gear.mesh"), motor_speed=100.0)
     assert asked.torques["input_shaft"] == pytest.approx(0.29, rel=1e-9)
+
+
+@dataclass(frozen=True, kw_only=True)
+class WobbleOfThisTest(Effect):
+    """A torque on a body with a phase that runs at a rate of its own, which no operating point has."""
+
+    tried: ClassVar[bool] = False
+
+    def apply(self, draft: Draft, place: str, name: str) -> None:
+        phase = draft.add_running_state(f"{name}.phase", unit="rad", rate=lambda moment: 3.0 + 0.0 * moment.time)
+        draft.add_torque(name, place, lambda moment: 0.1 * np.sin(moment.state(phase)))
+
+
+def test_a_torque_with_a_phase_that_runs_on_has_no_operating_point() -> None:
+    scene = geared(hm.ConstantTorque(value=5.0)).with_effect(WobbleOfThisTest(), at="motor", name="wobble")
+    with pytest.raises(
+        LawError, match=r"wobble: its torque depends on the state 'wobble\.phase', which goes on with the rotation.*add_state"
+    ):
+        hm.operating_point(scene)
+    # in time it is a torque like any other: 0.1 sin(3 t) on all that turns
+    response = hm.simulate(scene, 0.05)
+    np.testing.assert_allclose(response["wobble.phase"].values, 3.0 * response.times, rtol=0.0, atol=1e-9)

@@ -63,6 +63,13 @@ CASES: dict[str, tuple[str, int, tuple[float, ...], Effect, str]] = {
         hm.BreathingCrack(**CRACK, angle=0.3 - math.pi, steepness=2.0),
         "section_1",
     ),
+    "steep crack by weight": (
+        "crack",
+        0,
+        (2, 0, 0.8, 3e-7, 1e-7, 0.3, 4.0),
+        hm.SteepCrack(**CRACK, angle=0.3 - math.pi, steepness=4.0),
+        "section_1",
+    ),
     "crack by moment": (
         "crack",
         0,

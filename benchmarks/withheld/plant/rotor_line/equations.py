@@ -77,7 +77,7 @@ class Causes(NamedTuple):
     crack: FloatArray  # law, section, place/length, compliance, the other axis's compliance, angle, scale
     bearing: FloatArray  # (2, 6)
     cross: FloatArray  # (2, 4)
-    whirl: FloatArray  # law, bearing, force, fraction, its slope, onset speed, wander, seed, growth, coupling
+    whirl: FloatArray  # law, bearing, force, fraction, its slope, onset speed, wander, seed, growth, coupling (law 4: power)
     passing: FloatArray  # law, ratio, slip, size, exponent, sharpness, direction, background, bearing, seed
     support: FloatArray  # (2, 4): law, low, high, part
     drift: FloatArray  # (2, 2): share, time constant
