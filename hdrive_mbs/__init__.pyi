@@ -129,8 +129,10 @@ from hdrive_mbs.effects.effect import TorqueEffect as TorqueEffect
 from hdrive_mbs.effects.effect import TwistEffect as TwistEffect
 from hdrive_mbs.effects.encoder_eccentricity import EncoderEccentricity as EncoderEccentricity
 from hdrive_mbs.effects.external_shock import ExternalShock as ExternalShock
+from hdrive_mbs.effects.external_torque import ExternalTorque as ExternalTorque
 from hdrive_mbs.effects.film_backlash import FilmBacklash as FilmBacklash
 from hdrive_mbs.effects.flexible_inertia import FlexibleInertia as FlexibleInertia
+from hdrive_mbs.effects.friction_by_angle import FrictionByAngle as FrictionByAngle
 from hdrive_mbs.effects.ground_vibration import GroundVibration as GroundVibration
 from hdrive_mbs.effects.harmonic_kinematic_error import HarmonicKinematicError as HarmonicKinematicError
 from hdrive_mbs.effects.hertzian_clearance import HertzianClearance as HertzianClearance
@@ -144,6 +146,7 @@ from hdrive_mbs.effects.iwan_hysteresis import IwanHysteresis as IwanHysteresis
 from hdrive_mbs.effects.joint_slip import JointSlip as JointSlip
 from hdrive_mbs.effects.kinematic_error import KinematicError as KinematicError
 from hdrive_mbs.effects.lateral_effect import LateralEffect as LateralEffect
+from hdrive_mbs.effects.load_lag import LoadLag as LoadLag
 from hdrive_mbs.effects.loaded_misalignment import LoadedMisalignment as LoadedMisalignment
 from hdrive_mbs.effects.loose_bolt import LooseBolt as LooseBolt
 from hdrive_mbs.effects.loose_fit import LooseFit as LooseFit
@@ -173,6 +176,7 @@ from hdrive_mbs.effects.relaxing_damping import RelaxingDamping as RelaxingDampi
 from hdrive_mbs.effects.ripple_spectrum import RippleSpectrum as RippleSpectrum
 from hdrive_mbs.effects.rotor_unbalance import RotorUnbalance as RotorUnbalance
 from hdrive_mbs.effects.rub import Rub as Rub
+from hdrive_mbs.effects.rub_at_angle import RubAtAngle as RubAtAngle
 from hdrive_mbs.effects.second_order_lag import SecondOrderLag as SecondOrderLag
 from hdrive_mbs.effects.sensor_delay import SensorDelay as SensorDelay
 from hdrive_mbs.effects.sensor_drift import SensorDrift as SensorDrift
@@ -194,10 +198,15 @@ from hdrive_mbs.effects.stiffness_variation import StiffnessVariation as Stiffne
 from hdrive_mbs.effects.supply_sag import SupplySag as SupplySag
 from hdrive_mbs.effects.support_damping_change import SupportDampingChange as SupportDampingChange
 from hdrive_mbs.effects.support_effect import SupportEffect as SupportEffect
+from hdrive_mbs.effects.support_friction import SupportFriction as SupportFriction
 from hdrive_mbs.effects.support_mass_change import SupportMassChange as SupportMassChange
+from hdrive_mbs.effects.support_presliding import SupportPresliding as SupportPresliding
+from hdrive_mbs.effects.support_square_damping import SupportSquareDamping as SupportSquareDamping
 from hdrive_mbs.effects.support_stiffness_change import SupportStiffnessChange as SupportStiffnessChange
+from hdrive_mbs.effects.support_stiffness_drift import SupportStiffnessDrift as SupportStiffnessDrift
 from hdrive_mbs.effects.thermal_drift import ThermalDrift as ThermalDrift
 from hdrive_mbs.effects.torque_ripple import TorqueRipple as TorqueRipple
+from hdrive_mbs.effects.unequal_drag import UnequalDrag as UnequalDrag
 from hdrive_mbs.effects.varying_oil_whirl import VaryingOilWhirl as VaryingOilWhirl
 from hdrive_mbs.effects.viscous_drag import ViscousDrag as ViscousDrag
 from hdrive_mbs.effects.whole_shaft_effect import WholeShaftEffect as WholeShaftEffect

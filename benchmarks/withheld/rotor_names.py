@@ -47,7 +47,10 @@ AT_SUPPORTS: dict[Label, Name] = {
     **{("support_stiffness", f"bearing_{k}"): ("parameter_support_stiffness", f"support_{k}") for k in SIDES},
     ("parameter", "support_stiffness"): ("parameter_support_stiffness", "support_1"),
 }
-OF_SUPPORTS = ("support_damping", "support_mass", "ground_vibration", "external_shock")
+OF_SUPPORTS = (
+    *("support_damping", "support_mass", "support_stiffness_drift", "support_friction", "support_square_damping"),
+    *("ground_vibration", "external_shock"),
+)
 """Families without a name that act on a housing from outside."""
 AT_PROBES: dict[Label, Name] = {
     **{("probe_runout", f"rotor_{k}"): ("probe_runout", f"probe_rotor_{k}") for k in SIDES},

@@ -45,6 +45,6 @@ class Load(Component):
         def resisting(moment: Moment) -> Value:
             return law.torque(moment.time, moment.angle(body), moment.speed(body))
 
-        draft.add_torque(f"{name}.torque", body, lambda moment: -resisting(moment))
+        draft.add_torque(f"{name}.torque", body, lambda moment: -resisting(moment), is_load=True)
         draft.add_channel(f"{name}.torque", "N m", f"load torque of {name}, positive when resisting", resisting)
         add_viscous(name, self.viscous, draft)

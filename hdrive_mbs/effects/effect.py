@@ -49,8 +49,8 @@ class Effect(Described, ABC):
     _kind: ClassVar[str] = "effect"
     _use: ClassVar[str] = 'scene.with_effect({name}(...), at="...") puts it at a place of a scene'
     acts_on: ClassVar[str] = "body"
-    """The kind of place the effect needs, one of PLACES: 'body', 'connection', 'gear', 'coupling', 'motor', 'sensor'; on rotor lines
-    'rotor', 'station', 'bearing', 'support', 'shaft', 'drive end'; under sensors 'probe' and 'surface'."""
+    """The kind of place the effect needs, one of PLACES: 'body', 'connection', 'gear', 'coupling', 'motor', 'sensor', 'load'; on rotor
+    lines 'rotor', 'station', 'bearing', 'support', 'shaft', 'drive end'; under sensors 'probe' and 'surface'."""
     kind: ClassVar[str] = "force"
     """One of KINDS."""
     family: ClassVar[str] = _OwnName()  # type: ignore[assignment]

@@ -13,6 +13,12 @@ def turning_bodies(network: Network) -> tuple[str, ...]:
     return tuple(body.name for body in network.bodies if not body.lateral)
 
 
+def torsional_bodies(network: Network) -> tuple[str, ...]:
+    """Bodies that only turn: of drive trains, not of rotor lines, which turn one way for long and also move across the axis."""
+    across = set(stations(network))
+    return tuple(name for name in turning_bodies(network) if name not in across)
+
+
 def connections(network: Network) -> tuple[str, ...]:
     """Torsional shafts, couplings and meshes of gears.
 
@@ -40,6 +46,13 @@ def motors(network: Network) -> tuple[str, ...]:
     """Motors with a torque law whose rotors turn freely."""
     free = set(turning_bodies(network))
     found = [e for e in network.elements if isinstance(e, AppliedTorque) and e.is_motor and e.coordinate in free]
+    return tuple(element.name.removesuffix(".torque") for element in found)
+
+
+def loads(network: Network) -> tuple[str, ...]:
+    """Working machines whose bodies turn freely."""
+    free = set(turning_bodies(network))
+    found = [e for e in network.elements if isinstance(e, AppliedTorque) and e.is_load and e.coordinate in free]
     return tuple(element.name.removesuffix(".torque") for element in found)
 
 
@@ -123,6 +136,7 @@ PLACES: Mapping[str, Callable[[Network], tuple[str, ...]]] = {
     "coupling": couplings,
     "motor": motors,
     "sensor": sensors,
+    "load": loads,
     "rotor": rotors,
     "station": stations,
     "bearing": bearings,

@@ -42,6 +42,10 @@ class SupportEffect(Effect):
         support : see its ``spring``, ``damping`` and ``mass``
         """
 
+    def course(self, time: Value) -> Value:
+        """What the force is multiplied by at a time [s] of the run; 1 unless overridden."""
+        return 1.0
+
     def ways(self) -> tuple[str, ...]:
         """Directions in which it acts."""
         return ("x", "y") if self.direction == "both" else (self.direction,)
@@ -52,12 +56,12 @@ class SupportEffect(Effect):
             factors = support.displacement[direction]
 
             def force(moment: Moment, x: Value, rate: Value, direction: str = direction) -> Value:
-                return self.added(direction, x, rate, support)
+                return self.course(moment.time) * self.added(direction, x, rate, support)
 
             def read(moment: Moment, factors: dict[str, float] = dict(factors), direction: str = direction) -> Value:  # noqa: B006
                 x = sum(f * moment.angle(c) for c, f in factors.items())
                 rate = sum(f * moment.speed(c) for c, f in factors.items())
-                return -self.added(direction, x, rate, support) + 0.0 * moment.time
+                return -self.course(moment.time) * self.added(direction, x, rate, support) + 0.0 * moment.time
 
             draft.add_relative_torque(f"{name}.{direction}", dict(factors), force, dissipative=self.dissipative)
             draft.add_channel(f"{name}.force_{direction}", "N", f"force of {name} on the housing of {place} in {direction}", read)

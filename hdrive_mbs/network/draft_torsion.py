@@ -14,6 +14,9 @@ from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import State
 from hdrive_mbs.network.node import Node
 
+Change = Callable[[Callable[[Moment], Value]], Callable[[Moment], Value]]
+"""Torque of a moment -> what reaches the body in its place."""
+
 
 class DraftTorsion(DraftChannels):
     """Connections, torques, states and prescribed motions."""
@@ -55,13 +58,15 @@ class DraftTorsion(DraftChannels):
         dissipative: bool = False,
         stored: Callable[[Moment], Value] | None = None,
         is_motor: bool = False,
+        is_load: bool = False,
     ) -> None:
         """A torque on a coordinate, positive in its forward sense.
 
         stored : energy in its states
         is_motor : it is that of the motor ``<motor>`` and called ``<motor>.torque``; effects may change what reaches the rotor
+        is_load : likewise of the load ``<load>``
         """
-        self._elements.append(AppliedTorque(name, coordinate, torque, dissipative, stored, is_motor))
+        self._elements.append(AppliedTorque(name, coordinate, torque, dissipative, stored, is_motor, is_load))
 
     def add_inertia(self, place: str, inertia: float, asked_by: str = "This") -> None:
         """More inertia [kg m^2] at a place, or less.  Raises PlaceError where it leaves none, or where the place moves across the axis."""
@@ -108,21 +113,33 @@ class DraftTorsion(DraftChannels):
 
         return read
 
-    def change_motor(
-        self, place: str, change: Callable[[Callable[[Moment], Value]], Callable[[Moment], Value]], asked_by: str = "This"
-    ) -> Callable[[Moment], Value]:
+    def change_motor(self, place: str, change: Change, asked_by: str = "This") -> Callable[[Moment], Value]:
         """Let ``change(torque)`` reach the rotor of a motor in place of its torque; returns it.
 
         The channel ``<place>.torque`` stays what the characteristic gives.  Raises PlaceError where no motor with a torque law is.
         """
+        torques = {k: item for k, item in enumerate(self._elements) if isinstance(item, AppliedTorque) and item.is_motor}
+        return self._change_torque(torques, place, change, asked_by, "motor")
+
+    def change_load(self, place: str, change: Change, asked_by: str = "This") -> Callable[[Moment], Value]:
+        """Let ``change(torque)`` reach the body of a load in place of its torque, both in the forward sense; returns it.
+
+        The channel ``<place>.torque`` stays what the load law gives.  Raises PlaceError where no load is.
+        """
+        torques = {k: item for k, item in enumerate(self._elements) if isinstance(item, AppliedTorque) and item.is_load}
+        return self._change_torque(torques, place, change, asked_by, "load")
+
+    def _change_torque(
+        self, torques: dict[int, AppliedTorque], place: str, change: Change, asked_by: str, what: str
+    ) -> Callable[[Moment], Value]:
         self.body(place, asked_by)
-        for k, element in enumerate(self._elements):
-            if isinstance(element, AppliedTorque) and element.is_motor and element.name == f"{place}.torque":
+        for k, element in torques.items():
+            if element.name == f"{place}.torque":
                 changed = replace(element, torque=change(element.torque))
                 self._elements[k] = changed
                 return changed.torque
-        motors = [item.name.removesuffix(".torque") for item in self._elements if isinstance(item, AppliedTorque) and item.is_motor]
-        raise PlaceError(f"{asked_by} needs a motor with a torque law, but {place!r} is none. Motors: {', '.join(motors) or 'none'}.")
+        known = ", ".join(item.name.removesuffix(".torque") for item in torques.values())
+        raise PlaceError(f"{asked_by} needs a {what} with a torque law, but {place!r} is none. {what.capitalize()}s: {known or 'none'}.")
 
     def add_state(self, name: str, *, unit: str, initial: float, rate: Callable[[Moment], Value]) -> str:
         """A first-order state dz/dt = rate(moment); returns its (unique) name."""

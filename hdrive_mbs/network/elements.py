@@ -118,7 +118,10 @@ class Connection:
 
 @dataclass(frozen=True)
 class AppliedTorque:
-    """A torque on one coordinate, positive in its forward sense; ``is_motor``: of a motor, on its rotor."""
+    """A torque on one coordinate, positive in its forward sense.
+
+    is_motor : of a motor, on its rotor;  is_load : of a working machine, on its body
+    """
 
     name: str
     coordinate: str
@@ -126,6 +129,7 @@ class AppliedTorque:
     dissipative: bool = False
     stored: Callable[[Moment], Value] | None = None
     is_motor: bool = False
+    is_load: bool = False
 
     def claims(self) -> tuple[Claim, ...]:
         """What the torque promises."""

@@ -41,13 +41,16 @@ from hdrive_mbs.effects.dahl_hysteresis import DahlHysteresis
 from hdrive_mbs.effects.eccentric_load import EccentricLoad
 from hdrive_mbs.effects.effect import KINDS, Effect, MemoryTwistEffect, TorqueEffect, TwistEffect
 from hdrive_mbs.effects.encoder_eccentricity import EncoderEccentricity
+from hdrive_mbs.effects.external_torque import ExternalTorque
 from hdrive_mbs.effects.film_backlash import FilmBacklash
 from hdrive_mbs.effects.flexible_inertia import FlexibleInertia
+from hdrive_mbs.effects.friction_by_angle import FrictionByAngle
 from hdrive_mbs.effects.harmonic_kinematic_error import HarmonicKinematicError
 from hdrive_mbs.effects.hidden_mode import HiddenMode
 from hdrive_mbs.effects.iwan_hysteresis import IwanHysteresis
 from hdrive_mbs.effects.joint_slip import JointSlip
 from hdrive_mbs.effects.kinematic_error import KinematicError
+from hdrive_mbs.effects.load_lag import LoadLag
 from hdrive_mbs.effects.lost_motion import LostMotion
 from hdrive_mbs.effects.lugre_friction import LuGreFriction
 from hdrive_mbs.effects.maxwell_slip_hysteresis import MaxwellSlipHysteresis
@@ -60,6 +63,7 @@ from hdrive_mbs.effects.power_drag import PowerDrag
 from hdrive_mbs.effects.presliding_friction import PreslidingFriction
 from hdrive_mbs.effects.quadratic_drag import QuadraticDrag
 from hdrive_mbs.effects.ripple_spectrum import RippleSpectrum
+from hdrive_mbs.effects.rub_at_angle import RubAtAngle
 from hdrive_mbs.effects.second_order_lag import SecondOrderLag
 from hdrive_mbs.effects.sensor_delay import SensorDelay
 from hdrive_mbs.effects.sensor_drift import SensorDrift
@@ -74,6 +78,7 @@ from hdrive_mbs.effects.stiffness_variation import StiffnessVariation
 from hdrive_mbs.effects.supply_sag import SupplySag
 from hdrive_mbs.effects.thermal_drift import ThermalDrift
 from hdrive_mbs.effects.torque_ripple import TorqueRipple
+from hdrive_mbs.effects.unequal_drag import UnequalDrag
 from hdrive_mbs.effects.viscous_drag import ViscousDrag
 from hdrive_mbs.engine.assembly import LoweringWarning, assemble
 from hdrive_mbs.engine.simulation import RawRun, run
@@ -220,6 +225,15 @@ EXAMPLES = {
         Example(Creep(compliance=2e-5, relaxation_time=5e-3), "gear", ("compliance",)),
         Example(JointSlip(slip_torque=0.02, slip_rate=0.5), "coupling", ("slip_rate",)),
         Example(ThermalDrift(viscous_change=5.0, friction_change=-3.0, time_constant=0.05), "load", ("viscous_change", "friction_change")),
+        Example(LoadLag(time_constant=5e-3), "load", ("time_constant",)),
+        Example(ExternalTorque(amplitude=20.0, frequency=300.0, phase=0.4), "load", ("amplitude",)),
+        Example(UnequalDrag(viscous=10.0, friction=-3.0), "load", ("viscous", "friction")),
+        Example(
+            FrictionByAngle(mean=5.0, once=2.0, once_phase=0.3, twice=1.0, thrice=0.5, thrice_phase=1.0),
+            "load",
+            ("mean", "once", "twice", "thrice"),
+        ),
+        Example(RubAtAngle(friction=5.0, angle=0.3, sharpness=2.0), "load", ("friction",)),
         Example(SensorGain(error=0.1), "torque_sensor", ("error",)),
         Example(SensorOffset(offset=0.5), "torque_sensor", ("offset",)),
         Example(SensorLag(time_constant=2e-3), "load_encoder", ("time_constant",)),
@@ -233,7 +247,7 @@ EXAMPLES = {
 }
 
 
-TRAIN_KINDS = ("body", "connection", "gear", "coupling", "motor", "sensor")
+TRAIN_KINDS = ("body", "connection", "gear", "coupling", "motor", "sensor", "load")
 """Kinds of places that a drive train has; effects at others are held to the contract in test_rotor_effects.py."""
 
 

@@ -74,6 +74,10 @@ EXAMPLES = {
         Example(hm.SupportStiffnessChange(change=0.3), "left", ("change",)),
         Example(hm.SupportDampingChange(change=0.8), "left", ("change",)),
         Example(hm.SupportMassChange(change=0.4), "left", ("change",)),
+        Example(hm.SupportStiffnessDrift(change=0.5, time_constant=0.02), "left", ("change",)),
+        Example(hm.SupportFriction(coulomb=20.0, smoothing_speed=1e-3), "left", ("coulomb",)),
+        Example(hm.SupportPresliding(coulomb=20.0, presliding=2e-5), "left", ("coulomb",)),
+        Example(hm.SupportSquareDamping(coefficient=1e4), "left", ("coefficient",)),
         Example(hm.HiddenModeSupport(mass=0.5, natural_frequency=300.0, ratio=1.3, angle=0.4), "left", ("mass",)),
         Example(hm.BreathingCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, steepness=2.0), "first", ("compliance",)),
         Example(hm.MomentCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, closing_moment=3.0), "first", ("compliance",)),
@@ -305,9 +309,9 @@ def test_at_an_unknown_place_it_says_so(example: Example) -> None:
         line().with_effect(example.effect, at="dics").network()
 
 
-def test_every_kind_of_place_but_gears_and_couplings_is_on_the_line() -> None:
+def test_every_kind_of_place_but_those_of_drive_trains_is_on_the_line() -> None:
     network = line().network()
-    assert {kind for kind, find in PLACES.items() if not find(network)} == {"connection", "gear", "coupling"}
+    assert {kind for kind, find in PLACES.items() if not find(network)} == {"connection", "gear", "coupling", "load"}
 
 
 def test_a_pair_of_amplitude_and_phase_turns_like_a_vector(example: Example) -> None:

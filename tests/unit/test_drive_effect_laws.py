@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 import scipy.optimize
+import scipy.special
 from scipy.integrate import solve_ivp
 
 import hdrive_mbs as hm
@@ -15,6 +16,7 @@ from hdrive_mbs.effects.dead_zone import contact_share, dead_zone
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError, PlaceError
 from hdrive_mbs.expression import Value, gradient
+from models import drive_bench, rotor_bench
 
 TIGHT = hm.DormandPrince(relative_tolerance=1e-10, absolute_tolerance=1e-12, max_step=1e-3)
 
@@ -639,3 +641,93 @@ def test_friction_that_fades_as_a_machine_warms_drives_against_that_of_the_model
     assert law.torque(0.0, 0.0, 5.0) == 0.0
     assert law.torque(0.5, 0.0, 5.0) == pytest.approx(3.0 * (1.0 - math.exp(-1.0)), rel=1e-12)
     assert law.torque(50.0, 0.0, -5.0) == pytest.approx(-3.0, rel=1e-12)
+
+
+# -- loads, neighbours, and friction by sense and angle ---------------------------------------------------
+
+
+def braked(torque: object, inertia: float = 0.2) -> hm.Scene:
+    """A load on its own."""
+    return hm.Scene(name="braked", parts={"load": hm.Load(inertia=inertia, torque=torque)}, connections=[])
+
+
+@pytest.mark.parametrize("lag", [0.02, 1e-4], ids=["followed", "too fast to be followed"])
+def test_a_load_that_lags_brakes_late_by_its_time(lag: float) -> None:
+    """J dw/dt = -M (1 - exp(-t/T)):  w = -(M/J) (t - T (1 - exp(-t/T))), in the end as if the load came T later."""
+    response = hm.simulate(
+        braked(lambda time: 5.0 + 0.0 * time).with_effect(hm.LoadLag(time_constant=lag), at="load", name="it"), 0.2, solver=TIGHT
+    )
+    times = response.times
+    share = min(1.0, lag * 5e3)
+    followed = lag / share
+    wanted = -5.0 / 0.2 * (times - share * followed * (1.0 - np.exp(-times / followed)))
+    np.testing.assert_allclose(response["load.speed"].values, wanted, rtol=0.0, atol=1e-8)
+    assert response["load.speed"].values[-1] == pytest.approx(-5.0 / 0.2 * (0.2 - lag), rel=1e-4)
+    np.testing.assert_allclose(response["load.torque"].values, 5.0, rtol=1e-12)  # what is asked of it
+    assert response["it.torque"].values[-1] == pytest.approx(5.0, rel=1e-4)
+
+
+def test_a_lag_of_the_load_needs_a_load() -> None:
+    with pytest.raises(PlaceError, match=r"LoadLag needs a load with a torque law, but 'wheel' is none. Loads: none"):
+        wheel().with_effect(hm.LoadLag(time_constant=1e-3), at="wheel").network()
+
+
+def test_a_torque_from_outside_swings_a_free_body_at_its_own_frequency() -> None:
+    amplitude, frequency, phase, inertia = 3.0, 40.0, 0.7, 0.2
+    effect = hm.ExternalTorque(amplitude=amplitude, frequency=frequency, phase=phase)
+    response = hm.simulate(wheel(inertia).with_effect(effect, at="wheel"), 0.5, solver=TIGHT, initial_speed=2.0)
+    wanted = 2.0 + amplitude / (inertia * frequency) * (math.cos(phase) - np.cos(frequency * response.times + phase))
+    np.testing.assert_allclose(response["wheel.speed"].values, wanted, rtol=0.0, atol=1e-7)
+
+
+@pytest.mark.parametrize("speed", [-3.0, 3.0])
+def test_drag_in_one_sense_is_the_mean_and_the_difference(speed: float) -> None:
+    """c w forward and nothing backward: coasting down is exp(-c t/J) forward, and backward the speed stays."""
+    drag, inertia = 0.1, 0.2
+    scene = wheel(inertia).with_effect(hm.ViscousDrag(coefficient=0.5 * drag), at="wheel")
+    scene = scene.with_effect(hm.UnequalDrag(viscous=drag), at="wheel")
+    response = hm.simulate(scene, 2.0, solver=TIGHT, initial_speed=speed)
+    wanted = speed * np.exp(-drag / inertia * response.times) if speed > 0.0 else speed + 0.0 * response.times
+    np.testing.assert_allclose(response["wheel.speed"].values, wanted, rtol=0.0, atol=1e-8)
+
+
+def test_unequal_friction_takes_its_half_forward_and_gives_it_backward() -> None:
+    law = hm.UnequalDrag(friction=0.8, smoothing_speed=1e-3)
+    assert [float(law.torque(0.0, 0.0, speed)) for speed in (1.0, -1.0, 0.0)] == pytest.approx([-0.4, -0.4, 0.0], abs=1e-15)
+
+
+def torque_over_a_turn(effect: Effect, speed: float) -> tuple[np.ndarray, np.ndarray]:
+    """True angles of one turn and what the effect does to a body there."""
+    network = wheel().with_effect(effect, at="wheel", name="it").network()
+    angles = np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False)
+    read = next(channel.read for channel in network.channels if channel.name == "it.torque")
+    moments = (network.moment(0.0, {"wheel": angle}, {"wheel": speed}, {}) for angle in angles)
+    return angles, np.array([float(read(moment)) for moment in moments])
+
+
+@pytest.mark.parametrize("speed", [5.0, -5.0])
+def test_a_rub_at_an_angle_takes_the_work_of_its_bell(speed: float) -> None:
+    """Over a turn T times the integral of exp(k (cos a - 1)), 2 pi exp(-k) I_0(k), in both senses; all of it at the angle."""
+    effect = hm.RubAtAngle(friction=2.0, angle=1.3, sharpness=12.0)
+    angles, torque = torque_over_a_turn(effect, speed)
+    # the trapezoidal rule is exact to rounding for a periodic function as smooth as this
+    assert np.mean(torque) * 2.0 * np.pi == pytest.approx(-math.copysign(2.0 * 2.0 * np.pi * scipy.special.ive(0, 12.0), speed), rel=1e-12)
+    assert angles[np.argmax(np.abs(torque))] == pytest.approx(1.3, abs=np.pi / 720)
+
+
+@pytest.mark.parametrize("speed", [5.0, -5.0])
+def test_friction_by_angle_has_its_harmonics_and_turns_over_with_the_sense(speed: float) -> None:
+    effect = hm.FrictionByAngle(mean=4.0, once=1.0, once_phase=0.3, twice=0.5, twice_phase=-1.0, thrice=0.2, thrice_phase=2.0)
+    angles, torque = torque_over_a_turn(effect, speed)
+    spectrum = np.fft.rfft(torque) / len(angles)
+    # A sin(k a + p) = Re(-i A exp(i p) exp(i k a)), half of it in the one-sided spectrum
+    wanted = [4.0] + [-0.5j * size * np.exp(1j * phase) for size, phase in ((1.0, 0.3), (0.5, -1.0), (0.2, 2.0))]
+    np.testing.assert_allclose(spectrum[:4], -np.sign(speed) * np.array(wanted), atol=1e-12)
+    assert np.max(np.abs(spectrum[4:])) < 1e-12
+
+
+def test_friction_by_sense_and_angle_is_looked_for_at_bodies_that_only_turn() -> None:
+    for kind in (hm.UnequalDrag, hm.FrictionByAngle, hm.RubAtAngle, hm.ExternalTorque):
+        assert kind.places(drive_bench.build().network()) == ("motor", "wave_generator", "gear.flexspline", "load")
+        assert kind.places(rotor_bench.build().network()) == ()
+    assert hm.LoadLag.places(drive_bench.build().network()) == ("load",)

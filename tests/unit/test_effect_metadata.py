@@ -143,7 +143,7 @@ def test_an_effect_of_a_users_own_can_name_its_places() -> None:
             draft.body(place)
 
     assert LoadOnly.places(drive_bench.build().network()) == ("load",)
-    turning = {"body", "connection", "gear", "coupling", "motor", "sensor"}
+    turning = {"body", "connection", "gear", "coupling", "motor", "sensor", "load"}
     assert set(PLACES) == turning | {"rotor", "station", "bearing", "support", "shaft", "drive end", "probe", "surface"}
 
 

@@ -1,0 +1,201 @@
+"""Friction, square damping and drift of a support, against closed forms and scipy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import hdrive_mbs as hm
+from hdrive_mbs.effects.effect import Effect
+from tests.unit.rotor_scenes import constant, support
+from tests.unit.test_rotor_law_effects import agrees, run, whirl_of
+
+STIFFNESS, HOUSING, DISC = 5e6, 20.0, 1e-3
+"""Foundation [N/m], housing and disc [kg]: the disc is too light to be felt, 5e-5 of the housing."""
+NATURAL = math.sqrt(STIFFNESS / HOUSING)
+BETWEEN, RINGS = 2e7, 100.0
+"""Stiffness and damping of the bearing [N/m, N s/m]."""
+AWAY = 1e-4
+
+
+def scene(disc: float = DISC, damping: float = 0.0, weight: bool = False) -> hm.Scene:
+    law = hm.LinearBearing.isotropic(radial=BETWEEN, damping=RINGS, tilt=1e3, axial=1e4)
+    housing = hm.Housing(mass=HOUSING, stiffness_x=STIFFNESS, stiffness_y=STIFFNESS, damping_x=damping, damping_y=damping)
+    parts: dict[str, hm.Component] = {"gravity": hm.Gravity()} if weight else {}
+    parts |= {
+        "drive": hm.DriveTorque(characteristic=constant(0.0)),
+        "disc": hm.Rotor(mass=disc, polar_inertia=0.01, transverse_inertia=0.006),
+        "bearing": hm.Bearing(law=law, housing=housing),
+    }
+    return hm.Scene(name="housing", parts=parts, connections=[("drive", "disc", "bearing")])
+
+
+def let_go(effect: Effect, duration: float, *, direction: float = 0.7, away: float = AWAY) -> tuple[np.ndarray, np.ndarray]:
+    """Times and the displacement along a direction of a housing that is let go there; across it nothing moves."""
+    start = {"x": away * math.cos(direction), "y": away * math.sin(direction)}
+    initial = {f"{place}.{key}": value for place in ("disc", "bearing.housing") for key, value in start.items()}
+    response = run(scene().with_effect(effect, at="bearing", name="it"), duration, 1e-5, initial=initial)
+    turned = whirl_of(response, "bearing.housing") * np.exp(-1j * direction)
+    assert np.max(np.abs(turned.imag)) < 1e-9 * away
+    return response.times, turned.real
+
+
+def turning_points(values: np.ndarray) -> np.ndarray:
+    """Sizes of extremes, by a parabola through three samples."""
+    inner = [k for k in range(1, len(values) - 1) if (values[k] - values[k - 1]) * (values[k + 1] - values[k]) < 0.0]
+    found = []
+    for k in inner:
+        before, here, after = values[k - 1 : k + 2]
+        bend = before - 2.0 * here + after
+        found.append(abs(here - (after - before) ** 2 / (8.0 * bend)))
+    return np.array(found)
+
+
+def test_a_rubbing_housing_rings_down_by_the_same_length_each_half_period() -> None:
+    """Coulomb's law: |A| falls by 2 T/k each half period, in any direction across the axis."""
+    force = 50.0
+    times, x = let_go(hm.SupportFriction(coulomb=force, smoothing_speed=1e-4), 4.2 * math.pi / NATURAL)
+    found = turning_points(x)[:3]
+    wanted = AWAY - 2.0 * force / STIFFNESS * np.arange(1, 4)
+    # the smooth root takes (v_0/v)^2 (1/2 + ln(2 v/v_0)) of the work of each half period, 3e-5 of the drop at v = 20 mm/s, and the disc
+    # 5e-5; RK4 meets the corner within a step, (w h)^2/8
+    assert found == pytest.approx(wanted, abs=2e-4 * (2.0 * force / STIFFNESS))
+    assert len(times) > 1000
+
+
+def test_a_turbulent_damper_takes_the_more_the_larger_the_motion() -> None:
+    """Work c |v|^3 over a period, 8/3 c w^2 A^3, from the energy k A^2/2:  1/A_n = 1/A_0 + 8/3 c/m n, to the first order in c A/m."""
+    coefficient, periods = 400.0, 5
+    _, x = let_go(hm.SupportSquareDamping(coefficient=coefficient), (periods + 0.1) * 2.0 * math.pi / NATURAL)
+    found = turning_points(x)[1::2][:periods]
+    small = coefficient * AWAY / HOUSING
+    wanted = AWAY / (1.0 + 8.0 / 3.0 * small * np.arange(1, periods + 1))
+    assert 8.0 / 3.0 * small * periods > 0.02
+    assert found == pytest.approx(wanted, rel=(8.0 / 3.0 * small) ** 2 * periods + 5e-5)
+
+
+def test_small_motion_sees_a_sticking_housing_as_a_spring() -> None:
+    """With A far below d the force is T/d times the motion: frequency sqrt((k + T/d)/m)."""
+    force, way = 50.0, 1e-5
+    away = 1e-4 * way
+    stiffer = math.sqrt((STIFFNESS + force / way) / HOUSING)
+    law = hm.SupportPresliding(coulomb=force, presliding=way)
+    times, x = let_go(law, 8.2 * 2.0 * math.pi / stiffer, away=away)
+    x = x - away * (force / way) / (STIFFNESS + force / way)  # the state begins at zero: that spring is slack where it was let go
+    falling = [k for k in range(len(x) - 1) if x[k] > 0.0 >= x[k + 1]]
+    crossings = np.array([times[k] + (times[k + 1] - times[k]) * x[k] / (x[k] - x[k + 1]) for k in falling])
+    # z is short of s/d by up to |s|/(2 d), 1e-4
+    assert len(crossings) >= 7
+    assert np.diff(crossings) == pytest.approx(2.0 * math.pi / stiffer, rel=2e-4)
+
+
+Law = Callable[[float, complex, complex, complex], tuple[complex, complex]]
+"""(time, displacement and velocity of the housing, state) -> force on it beside spring and damper, rate of the state."""
+
+
+def scipy_says(law: Law, times: np.ndarray, start: complex, damping: float, disc: float) -> np.ndarray:
+    """Disc and housing as two masses with complex displacements, and one complex state; shape (2, times)."""
+
+    def rates(t: float, y: np.ndarray) -> np.ndarray:
+        pull = BETWEEN * (y[0] - y[1]) + RINGS * (y[2] - y[3])
+        force, state = law(t, y[1], y[3], y[4])
+        return np.array([y[2], y[3], -pull / disc, (pull - STIFFNESS * y[1] - damping * y[3] + force) / HOUSING, state])
+
+    begun = np.array([start, start, 30e-3 * 1j, 0.0, 0.0], complex)
+    made = solve_ivp(rates, (0.0, times[-1]), begun, t_eval=times, rtol=1e-10, atol=1e-14, max_step=1e-4)
+    assert made.success
+    return np.asarray(made.y[:2])
+
+
+def rubs(t: float, z: complex, v: complex, state: complex) -> tuple[complex, complex]:
+    return -40.0 * v / math.hypot(abs(v), 2e-3), 0.0
+
+
+def sticks(t: float, z: complex, v: complex, state: complex) -> tuple[complex, complex]:
+    return -40.0 * state, (v - abs(v) * state) / 2e-5
+
+
+def square(t: float, z: complex, v: complex, state: complex) -> tuple[complex, complex]:
+    return -3e4 * abs(v) * v, 0.0
+
+
+def drifts(t: float, z: complex, v: complex, state: complex) -> tuple[complex, complex]:
+    return -0.6 * (1.0 - math.exp(-t / 0.02)) * STIFFNESS * z, 0.0
+
+
+@pytest.mark.parametrize(
+    ("effect", "law"),
+    [
+        (hm.SupportFriction(coulomb=40.0, smoothing_speed=2e-3), rubs),
+        (hm.SupportPresliding(coulomb=40.0, presliding=2e-5), sticks),
+        (hm.SupportSquareDamping(coefficient=3e4), square),
+        (hm.SupportStiffnessDrift(change=0.6, time_constant=0.02), drifts),
+    ],
+    ids=["rubs", "sticks", "square", "drifts"],
+)
+def test_a_disc_thrown_on_its_housing_whirls_as_scipy_says(effect: Effect, law: Law) -> None:
+    disc, damping = 4.0, 200.0
+    initial: dict[str, Any] = {f"{place}.x": AWAY for place in ("disc", "bearing.housing")} | {"disc.y_rate": 30e-3}
+    started = scene(disc, damping).with_effect(effect, at="bearing", name="it")
+    coarse, fine = (run(started, 0.06, step, initial=initial) for step in (2e-5, 1e-5))
+    wanted = scipy_says(law, fine.times, AWAY, damping, disc)
+    for k, place in enumerate(("disc", "bearing.housing")):
+        found, other = (whirl_of(response, place) for response in (fine, coarse))
+        # what half the step changes, of fourth order where the law is smooth, and the tolerance of scipy
+        agrees(found, wanted[k], 2.0 * np.max(np.abs(found[::2] - other)) / np.max(np.abs(wanted[k])) + 1e-8)
+        agrees(found, wanted[k], 1e-5)
+    assert np.ptp(np.abs(wanted[1])) > 0.1 * AWAY
+
+
+def test_a_sticking_housing_never_makes_energy() -> None:
+    """Power taken is the rate of T d |z|^2/2 and a heat T |v| |z|^2, also where sliding is too fast to be followed."""
+    force, way, rng = 30.0, 1e-6, np.random.default_rng(2)
+    for fastest in (1e3, 1e9):
+        effect = hm.SupportPresliding(coulomb=force, presliding=way, fastest_rate=fastest)
+        network = scene().with_effect(effect, at="bearing", name="it").network()
+        for _ in range(50):
+            v, z = complex(*rng.normal(0.0, 1e-2, 2)), complex(*rng.uniform(-0.7, 0.7, 2))
+            zero = dict.fromkeys((body.name for body in network.bodies), 0.0)
+            speeds = zero | {"bearing.housing.x": v.real, "bearing.housing.y": v.imag}
+            moment = network.moment(0.0, zero, speeds, {"it.bent_x": z.real, "it.bent_y": z.imag})
+            read = {channel.name: channel.read(moment) for channel in network.channels}
+            taken = -(read["it.force_x"] * v.real + read["it.force_y"] * v.imag)
+            rates = network.torques(moment)
+            stored = force * way * (z.real * rates["it.bent_x"] + z.imag * rates["it.bent_y"])
+            share = min(1.0, fastest * way / abs(v))
+            heat = force * abs(v) * (share * abs(z) ** 2 + 1.0 - share)
+            assert taken - stored == pytest.approx(heat, rel=1e-6)
+
+
+def test_a_drifting_support_lets_its_housing_sink() -> None:
+    """A slow change under the weight: the housing stands where the stiffness of that moment has it, y = y_s k/k(t)."""
+    drifting = scene(damping=4000.0, weight=True).with_effect(hm.SupportStiffnessDrift(change=-0.4, time_constant=0.5), at="bearing")
+    still = -(HOUSING + DISC) * 9.80665 / STIFFNESS
+    initial = {f"{place}.y": still for place in ("disc", "bearing.housing")}
+    response = run(drifting, 0.5, 1e-5, initial=initial)
+    y = response["bearing.housing.y"].values
+    wanted = still / (1.0 - 0.4 * (1.0 - np.exp(-response.times / 0.5)))
+    # it lags by d/k = 0.8 ms of a change within 0.5 s that is 0.4 at first
+    late = response.times > 0.05
+    assert y[late] == pytest.approx(wanted[late], rel=2.0 * 0.4 * 8e-4 / 0.5 + 1e-5)
+    assert wanted[-1] / still == pytest.approx(1.0 / (1.0 - 0.4 * (1.0 - math.exp(-1.0))), rel=1e-3)
+
+
+def test_a_support_is_needed() -> None:
+    free = hm.Scene(
+        name="no housing",
+        parts={
+            "drive": hm.DriveTorque(characteristic=constant(0.0)),
+            "disc": hm.Rotor(mass=2.0, polar_inertia=0.01, transverse_inertia=0.006),
+            "bearing": hm.Bearing(law=support()),
+        },
+        connections=[("drive", "disc", "bearing")],
+    )
+    for effect in (hm.SupportFriction(coulomb=1.0), hm.SupportStiffnessDrift(change=0.1, time_constant=1.0)):
+        with pytest.raises(hm.PlaceError, match="a bearing with a housing, and 'bearing' is none"):
+            free.with_effect(effect, at="bearing").network()
