@@ -80,7 +80,7 @@ class Causes(NamedTuple):
     whirl: FloatArray  # law, bearing, force, fraction, its slope, onset speed, wander, seed, growth, coupling (law 4: power)
     passing: FloatArray  # law, ratio, slip, size, exponent, sharpness, direction, background, bearing, seed
     support: FloatArray  # (2, 4): law, low, high, part
-    drift: FloatArray  # (2, 2): share, time constant
+    drift: FloatArray  # (2, 3): share, beginning, length
     friction: FloatArray  # (2, 3): contact stiffness, force, length over which the force varies
     quadratic: FloatArray  # (2,): N s^2/m^2
     floor: FloatArray  # law, support, ... as floor_force
@@ -98,7 +98,7 @@ def no_causes() -> Causes:
     """All absent."""
     return Causes(
         bow=np.zeros((4, 4)), internal=np.zeros(3), crack=np.zeros(7), bearing=np.zeros((2, 6)), cross=np.zeros((2, 4)),
-        whirl=np.zeros(10), passing=np.zeros(10), support=np.zeros((2, 4)), drift=np.zeros((2, 2)), friction=np.zeros((2, 3)),
+        whirl=np.zeros(10), passing=np.zeros(10), support=np.zeros((2, 4)), drift=np.zeros((2, 3)), friction=np.zeros((2, 3)),
         quadratic=np.zeros(2), floor=np.zeros(8), hidden=np.zeros(7), rub=np.zeros(11), misalignment=np.zeros(10),
         ripple=np.zeros(11), pull=np.zeros(7), ball=np.zeros(6), windage=np.zeros(4), seal=np.zeros(4),
     )  # fmt: skip
@@ -277,7 +277,7 @@ def slope(t, y, torque, hx, hy, M, C, out, s, w, f, r):
     # --- supports
     for b in range(2):
         h = HOUSING + 2 * b
-        fade = 1.0 - C.drift[b, 0] * (1.0 - math.exp(-t / C.drift[b, 1])) if C.drift[b, 0] != 0.0 else 1.0
+        fade = 1.0 - C.drift[b, 0] * min(max((t - C.drift[b, 1]) / C.drift[b, 2], 0.0), 1.0) if C.drift[b, 0] != 0.0 else 1.0
         for a in range(2):
             x, vx = q[h + a], v[h + a]
             k, d = M.support_stiffness[b, a] * fade, M.support_damping[b, a]

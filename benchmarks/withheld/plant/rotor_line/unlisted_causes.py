@@ -21,10 +21,11 @@ def support_dry_friction(bench: Planted, place: str, strength: float, rng: np.ra
 
 
 def support_stiffness_drift(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
-    """A support that softens or stiffens while it warms up, anew in each record."""
+    """A support that softens or stiffens steadily between two moments of each record."""
     share = sign(rng) * grown(strength, 0.01, 0.3)
-    bench.causes.drift[SUPPORT[place]] = share, rng.uniform(0.5, 2.5)
-    bench.effect.update(drift=share, drift_time=bench.causes.drift[SUPPORT[place], 1], loc=SUPPORT[place])
+    begins, length = rng.uniform(0.2, 2.0), rng.uniform(0.3, 3.0)
+    bench.causes.drift[SUPPORT[place]] = share, begins, length
+    bench.effect.update(drift=share, drift_begins=begins, drift_length=length, loc=SUPPORT[place])
 
 
 def support_quadratic_damping(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
