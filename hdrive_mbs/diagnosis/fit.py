@@ -43,6 +43,8 @@ class Fitted:
     z : search coordinates;  residuals : whitened, all samples;  cost : misfit of the fitted samples and priors
     curvature : J^T W J over the fitted samples at (or just before) z, shape (size, size)
     converged : whether the last step changed the cost by less than asked for
+    chi_fit, chi_held : mean squares over the samples that it saw and those that it did not
+    typical : twice the misfit of the fitted samples over their number: chi_fit with the stretches that fit worst counted by their logarithm
     """
 
     hypothesis: Hypothesis
@@ -55,6 +57,7 @@ class Fitted:
     chi_fit: float
     chi_held: float
     history: tuple[float, ...] = field(default=())
+    typical: float = math.inf
 
     @property
     def covariance(self) -> FloatArray:
@@ -146,6 +149,7 @@ def fit(
         chi_fit=chi_square(residuals, mask),
         chi_held=chi_square(residuals, simulator.held_out),
         history=tuple(history),
+        typical=2.0 * simulator.blocks.cost(residuals[mask]) / max(int(np.count_nonzero(mask)), 1),
     )
 
 
