@@ -13,7 +13,7 @@ from hdrive_mbs.effects.lateral_effect import LateralEffect, Push, Stretches
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
-from hdrive_mbs.quantities import parameter
+from hdrive_mbs.quantities import option, parameter
 
 _CREEP = 1e-9
 """Speed [m/s] that is added under the root, so that it has a slope at rest."""
@@ -23,7 +23,7 @@ _CREEP = 1e-9
 class SupportPresliding(LateralEffect):
     """Dry friction between the housing of one bearing and the ground that builds up over a way: Dahl's law in the plane.
 
-    F = -T z,  dz/dt = (v - |v| z)/d
+    F = -T z,  dz/dt = (v - |v| z)/d,  or by axis with |x'| and |y'| for |v|
 
     with the velocity v = (x', y') of the housing; z runs to the direction of v over a way of about d.  Small motion sees a spring
     T/d, large motion the sliding force T.  With the stored energy T d |z|^2/2 the heat is T |v| |z|^2, never negative.  Sliding by d
@@ -36,13 +36,14 @@ class SupportPresliding(LateralEffect):
 
     coulomb: float = parameter("N", "sliding force T", low=0.0, high=1e6, typical=(0.05, 1e3))
     presliding: float = parameter("m", "d, way over which it builds up", above=0.0, high=0.1, typical=(1e-8, 1e-3))
+    by_axis: bool = option("whether x and y rub on their own", default=False)
     fastest_rate: float = parameter("1/s", "f, rate up to which the states are followed", default=2e4, above=0.0)
 
     acts_on: ClassVar[str] = "support"
     kind: ClassVar[str] = "hidden state"
     family: ClassVar[str] = "support_friction"
     signature: ClassVar[str] = "a support that is stiffer for small vibration than for large, with a loss in between"
-    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"presliding": (1e-6, 1e-5)}
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"presliding": (1e-6, 1e-5), "by_axis": (False, True)}
 
     def force(self, time: Value, angle: Value, speed: Value, x: Value, y: Value, x_rate: Value, y_rate: Value) -> tuple[Value, Value]:
         """What is left of it without its states: nothing."""
@@ -52,13 +53,14 @@ class SupportPresliding(LateralEffect):
         def velocity(moment: Moment) -> dict[str, Value]:
             return {key: sum(factor * moment.speed(c) for c, factor in stretches[key].items()) for key in "xy"}
 
-        def going(v: Mapping[str, Value]) -> tuple[Value, Value]:
-            size = np.sqrt(v["x"] * v["x"] + v["y"] * v["y"] + _CREEP**2)
+        def going(v: Mapping[str, Value], key: str) -> tuple[Value, Value]:
+            square = v[key] * v[key] if self.by_axis else v["x"] * v["x"] + v["y"] * v["y"]
+            size = np.sqrt(square + _CREEP**2)
             return size, followed_share(size / self.presliding, self.fastest_rate)
 
         def rate(moment: Moment, key: str) -> Value:
             v = velocity(moment)
-            size, share = going(v)
+            size, share = going(v, key)
             return share * (v[key] - size * moment.state(states[key])) / self.presliding
 
         states: dict[str, str] = {}
@@ -69,8 +71,11 @@ class SupportPresliding(LateralEffect):
             moment: Moment, time: Value, angle: Value, speed: Value, x: Value, y: Value, x_rate: Value, y_rate: Value
         ) -> tuple[Value, Value]:
             v = {"x": x_rate, "y": y_rate}
-            size, share = going(v)
-            along = {key: share * moment.state(states[key]) + (1.0 - share) * v[key] / size for key in "xy"}
-            return -self.coulomb * along["x"], -self.coulomb * along["y"]
+
+            def along(key: str) -> Value:
+                size, share = going(v, key)
+                return share * moment.state(states[key]) + (1.0 - share) * v[key] / size
+
+            return -self.coulomb * along("x"), -self.coulomb * along("y")
 
         return push

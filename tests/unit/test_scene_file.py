@@ -202,7 +202,7 @@ ROTOR_EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.SupportStiffnessDrift(change=0.1, time_constant=2.0), "bearing"),
     (hm.SupportFriction(coulomb=3.0), "bearing"),
     (hm.SupportPresliding(coulomb=3.0, presliding=1e-6), "bearing"),
-    (hm.SupportSquareDamping(coefficient=1e4), "bearing"),
+    (hm.SupportSquareDamping(coefficient=1e4, by_axis=True), "bearing"),
     (hm.HiddenModeSupport(mass=0.1, natural_frequency=300.0), "bearing"),
     (hm.BreathingCrack(compliance=1e-7, position=0.5), "shaft.element_2"),
     (hm.MomentCrack(compliance=1e-7, position=0.5, closing_moment=10.0), "shaft.element_2"),

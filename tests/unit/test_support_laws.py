@@ -124,6 +124,18 @@ def square(t: float, z: complex, v: complex, state: complex) -> tuple[complex, c
     return -3e4 * abs(v) * v, 0.0
 
 
+def rubs_by_axis(t: float, z: complex, v: complex, state: complex) -> tuple[complex, complex]:
+    return -40.0 * complex(v.real / math.hypot(v.real, 2e-3), v.imag / math.hypot(v.imag, 2e-3)), 0.0
+
+
+def sticks_by_axis(t: float, z: complex, v: complex, state: complex) -> tuple[complex, complex]:
+    return -40.0 * state, (v - complex(abs(v.real) * state.real, abs(v.imag) * state.imag)) / 2e-5
+
+
+def square_by_axis(t: float, z: complex, v: complex, state: complex) -> tuple[complex, complex]:
+    return -3e4 * complex(abs(v.real) * v.real, abs(v.imag) * v.imag), 0.0
+
+
 def drifts(t: float, z: complex, v: complex, state: complex) -> tuple[complex, complex]:
     return -0.6 * (1.0 - math.exp(-t / 0.02)) * STIFFNESS * z, 0.0
 
@@ -134,9 +146,12 @@ def drifts(t: float, z: complex, v: complex, state: complex) -> tuple[complex, c
         (hm.SupportFriction(coulomb=40.0, smoothing_speed=2e-3), rubs),
         (hm.SupportPresliding(coulomb=40.0, presliding=2e-5), sticks),
         (hm.SupportSquareDamping(coefficient=3e4), square),
+        (hm.SupportFriction(coulomb=40.0, smoothing_speed=2e-3, by_axis=True), rubs_by_axis),
+        (hm.SupportPresliding(coulomb=40.0, presliding=2e-5, by_axis=True), sticks_by_axis),
+        (hm.SupportSquareDamping(coefficient=3e4, by_axis=True), square_by_axis),
         (hm.SupportStiffnessDrift(change=0.6, time_constant=0.02), drifts),
     ],
-    ids=["rubs", "sticks", "square", "drifts"],
+    ids=["rubs", "sticks", "square", "rubs by axis", "sticks by axis", "square by axis", "drifts"],
 )
 def test_a_disc_thrown_on_its_housing_whirls_as_scipy_says(effect: Effect, law: Law) -> None:
     disc, damping = 4.0, 200.0
