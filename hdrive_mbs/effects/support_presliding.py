@@ -13,6 +13,7 @@ from hdrive_mbs.effects.lateral_effect import LateralEffect, Push, Stretches
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.stretch_rate import RateOver
 from hdrive_mbs.quantities import option, parameter
 
 _CREEP = 1e-9
@@ -50,22 +51,21 @@ class SupportPresliding(LateralEffect):
         return 0.0 * x, 0.0 * y
 
     def pushing(self, draft: Draft, stretches: Stretches, name: str) -> Push:
-        def velocity(moment: Moment) -> dict[str, Value]:
-            return {key: sum(factor * moment.speed(c) for c, factor in stretches[key].items()) for key in "xy"}
-
         def going(v: Mapping[str, Value], key: str) -> tuple[Value, Value]:
             square = v[key] * v[key] if self.by_axis else v["x"] * v["x"] + v["y"] * v["y"]
             size = np.sqrt(square + _CREEP**2)
             return size, followed_share(size / self.presliding, self.fastest_rate)
 
-        def rate(moment: Moment, key: str) -> Value:
-            v = velocity(moment)
-            size, share = going(v, key)
-            return share * (v[key] - size * moment.state(states[key])) / self.presliding
+        def rate(key: str) -> RateOver:
+            def of(moment: Moment, s: Mapping[str, Value], v: Mapping[str, Value]) -> Value:
+                size, share = going(v, key)
+                return share * (v[key] - size * moment.state(states[key])) / self.presliding
 
-        states: dict[str, str] = {}
+            return of
+
+        states = {key: f"{name}.bent_{key}" for key in "xy"}
         for key in "xy":
-            states[key] = draft.add_state(f"{name}.bent_{key}", unit="1", initial=0.0, rate=lambda moment, key=key: rate(moment, key))  # type: ignore[misc]
+            states[key] = draft.add_stretch_state(states[key], name, stretches, rate(key), unit="1")
 
         def push(
             moment: Moment, time: Value, angle: Value, speed: Value, x: Value, y: Value, x_rate: Value, y_rate: Value

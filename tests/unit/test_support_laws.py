@@ -11,7 +11,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import hdrive_mbs as hm
+from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import LawError
 from tests.unit.rotor_scenes import constant, support
 from tests.unit.test_rotor_law_effects import agrees, run, whirl_of
 
@@ -199,6 +201,17 @@ def test_a_drifting_support_lets_its_housing_sink() -> None:
     late = response.times > 0.05
     assert y[late] == pytest.approx(wanted[late], rel=2.0 * 0.4 * 8e-4 / 0.5 + 1e-5)
     assert wanted[-1] / still == pytest.approx(1.0 / (1.0 - 0.4 * (1.0 - math.exp(-1.0))), rel=1e-3)
+
+
+@pytest.mark.parametrize("by_axis", [False, True])
+def test_steady_rotation_leaves_a_sticking_housing_where_its_springs_have_it(by_axis: bool) -> None:
+    """States at rest are zero: the static deflection is that without; whirl modes, which have no place for states, are refused."""
+    plain = scene(disc=4.0, damping=200.0, weight=True)
+    sticking = plain.with_effect(hm.SupportPresliding(coulomb=40.0, presliding=2e-5, by_axis=by_axis), at="bearing")
+    found, wanted = (rotor_point(item, 100.0).angles for item in (sticking, plain))
+    assert {name: found[name] for name in wanted} == pytest.approx(wanted, abs=1e-18)
+    with pytest.raises(LawError, match="depends on the first-order state"):
+        hm.whirl_modes(sticking, 100.0)
 
 
 def test_a_support_is_needed() -> None:

@@ -48,6 +48,15 @@ CASES: dict[str, tuple[str, int, tuple[float, ...], Effect, str]] = {
     "lifts": ("support", 0, (1, -8e-6, 0.0, 0.5), hm.Looseness(share=0.5, lift_off=-8e-6), "bearing_1"),
     "lifts to the bolt": ("support", 0, (3, -8e-6, -2e-6, 0.5), hm.Looseness(share=0.5, lift_off=-8e-6, play=6e-6), "bearing_1"),
     "sideways": ("support", 0, (2, 0.0, 2e-6, 0.5), hm.LooseFit(share=0.5, half_play=2e-6), "bearing_1"),
+    "square damping": ("quadratic", 1, (4e5,), hm.SupportSquareDamping(coefficient=4e5, by_axis=True), "bearing_2"),
+    # the plant's sliding force depends on where the housing stands, over a way that is longer here than all of them
+    "sticking foot": (
+        "friction",
+        3,
+        (2e7, 20.0, 1e3),
+        hm.SupportPresliding(coulomb=20.0, presliding=20.0 / 2e7, by_axis=True, fastest_rate=1e9),
+        "bearing_2",
+    ),
     "hidden": (
         "hidden",
         0,
