@@ -299,7 +299,7 @@ def test_every_cause_acts_at_its_place(site: tuple[str, str]) -> None:
         state[[12, 13]] *= 4.0
         state[MORE + PASS] = 0.1
     change = [
-        slopes(bench.machine(), bench.causes, state, time=0.1 + 0.03 * k) - slopes(plain.machine(), no_causes(), state, time=0.1 + 0.03 * k)
+        slopes(bench.machine(), bench.causes, state, time=0.1 + 0.3 * k) - slopes(plain.machine(), no_causes(), state, time=0.1 + 0.3 * k)
         for k, state in enumerate(states)
     ]
     assert max(float(np.max(np.abs(part[COORDINATES:MORE]))) for part in change) > 1e-3
