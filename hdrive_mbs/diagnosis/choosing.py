@@ -81,15 +81,6 @@ def enough(base: Fitted, least: float) -> float:
     return max(least, float(base.chi_fit**SMALL))
 
 
-def remains(fitted: Fitted) -> float:
-    """Mean square that a fit leaves, for the question whether something else is to be looked for.
-
-    A stretch that fits badly counts by its logarithm there: impacts of a contact come a little early or late with every law that is
-    nearly right, and few samples then hold most of the sum of squares (practice rotor-p03, a clearance: 1.50 where it is 1.04 so).
-    """
-    return min(fitted.chi_fit, fitted.typical)
-
-
 def leaves(after: float, base: Fitted, least: float) -> bool:
     """Whether a mean square is worth a search for something else: see ``enough``, or much of a faint gap.
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from hdrive_mbs.diagnosis.beginnings import begun_at, beside, widths_of
 from hdrive_mbs.diagnosis.candidates import Candidate
-from hdrive_mbs.diagnosis.choosing import beyond, enough, leaves, passed_over, picked, remains, spread_out, worth
+from hdrive_mbs.diagnosis.choosing import beyond, enough, leaves, passed_over, picked, spread_out, worth
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.force_orders import StandsOut
 from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, restarts, unfinished
@@ -126,7 +126,7 @@ def search(
     known = work.scanned(everything) if how.laws > 1 and base.chi_fit > NEAR else []
     found, first = work.from_grounds(base, everything) if how.laws == 1 else work.from_ground(base, base, everything, known)
     looks = {f"{suspect.law} at {suspect.label[1]}": cost for suspect, cost in first}
-    if how.laws > 1 and how.again and base.chi_fit > FAR and not any(remains(item.fitted) < enough(base, ENOUGH) for item in found):
+    if how.laws > 1 and how.again and base.chi_fit > FAR and not any(item.fitted.typical < enough(base, ENOUGH) for item in found):
         likely = {suspect.label for suspect, _ in first[:SECOND_LOOKS]}
         more, _ = work.from_ground(held(simulator, base), base, [item for item in everything if item.label in likely or item.is_periodic])
         found = cheapest([*found, *more])
@@ -214,7 +214,7 @@ class _Work:
         ]
         further_ = [further(item.fitted, *((CONVERGED, FINE, 1) if end else (STEPS,))) for item, end in zip(kept, thorough, strict=True)]
         found = cheapest(self.fitted([(item.suspect, task) for item, task in zip(kept, further_, strict=True)], "fitting the best"))
-        if found and leaves(remains(found[0].fitted), base, ENOUGH):
+        if found and leaves(found[0].fitted.typical, base, ENOUGH):
             found = cheapest([*found, *self._others(passed_over(found, first, chosen))])
         return found, [(suspect, look.cost) for suspect, look in first]
 

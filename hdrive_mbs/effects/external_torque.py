@@ -23,7 +23,7 @@ class ExternalTorque(TorqueEffect):
 
     with the time t of the run, whatever the body does.
 
-    Source: forced torsional vibration, e.g. Den Hartog, Mechanical Vibrations (1956), chapter 5; a process force or a machine
+    Source: forced torsional vibration, e.g. Den Hartog, Mechanical Vibrations (1956); a process force or a machine
     beside the bench.  Leaves out how the neighbour starts and stops.
     """
 

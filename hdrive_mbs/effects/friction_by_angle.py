@@ -7,25 +7,21 @@ from typing import ClassVar
 
 import numpy as np
 
-from hdrive_mbs.effects.effect import Effect, add_body_torque, moving_body
+from hdrive_mbs.effects.angle_friction import AngleFriction
 from hdrive_mbs.effects.harmonics import harmonics
-from hdrive_mbs.effects.places import torsional_bodies
 from hdrive_mbs.expression import Value
-from hdrive_mbs.network.draft import Draft
-from hdrive_mbs.network.moment import Moment
-from hdrive_mbs.network.network import Network
 from hdrive_mbs.quantities import parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class FrictionByAngle(Effect):
+class FrictionByAngle(AngleFriction):
     """Dry friction of a body whose size depends on its angle, by up to three harmonics of the turn.
 
     tau = -tanh(w/w_0) (T + sum(A_k sin(k a + p_k))),  k = 1, 2, 3
 
     with the true angle a of the body and its speed w in the same sense.
 
-    Source: friction of robot joints by position, e.g. Armstrong-Helouvry, Control of Machines with Friction (1991), chapter 6.
+    Source: friction of robot joints by position, e.g. Armstrong-Helouvry, Control of Machines with Friction (1991).
     Leaves out presliding and the load.  Where the sum is below zero the effect drives, which the friction of the model must outweigh.
     """
 
@@ -36,22 +32,10 @@ class FrictionByAngle(Effect):
     twice_phase: float = parameter("rad", "p_2, phase at angle 0", default=0.0, typical=(-np.pi, np.pi))
     thrice: float = parameter("N m", "A_3, thrice per turn, 0-peak", default=0.0, low=0.0, high=1e3, typical=(1e-4, 20.0))
     thrice_phase: float = parameter("rad", "p_3, phase at angle 0", default=0.0, typical=(-np.pi, np.pi))
-    smoothing_speed: float = parameter("rad/s", "speed w_0 of the smooth step through zero", default=0.01, above=0.0)
 
-    family: ClassVar[str] = "friction_by_angle"
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("once", "once_phase"), ("twice", "twice_phase"), ("thrice", "thrice_phase"))
     signature: ClassVar[str] = "torque against the motion that comes and goes with the angle, at every speed and in both senses"
 
-    def apply(self, draft: Draft, place: str, name: str) -> None:
-        body = moving_body(self, draft, place)
+    def size(self, angle: Value) -> Value:
         parts = (self.once, self.once_phase), (self.twice, self.twice_phase), (self.thrice, self.thrice_phase)
-
-        def torque(moment: Moment) -> Value:
-            size = self.mean + harmonics(body.sense * moment.angle(body.name), 1.0, parts)
-            return -np.tanh(moment.speed(body.name) / self.smoothing_speed) * size
-
-        add_body_torque(self, draft, body.name, name, torque)
-
-    @classmethod
-    def places(cls, network: Network) -> tuple[str, ...]:
-        return torsional_bodies(network)
+        return self.mean + harmonics(angle, 1.0, parts)

@@ -83,12 +83,17 @@ class LateralEffect(Effect):
         kind = Excitation if self.excites else Coupling
         element = kind(name, stretches, forces, self.dissipative)
         draft.add_element(element)
-        for key in "xy":
+        add_force_channels(draft, name, element)
 
-            def read(moment: Moment, key: str = key) -> Value:
-                return -element.values(moment)[key] + 0.0 * moment.time
 
-            draft.add_channel(f"{name}.force_{key}", "N", f"force of {name} in {key}", read)
+def add_force_channels(draft: Draft, name: str, element: Coupling) -> None:
+    """The channels ``<effect>.force_x`` and ``force_y`` of what an element pushes with [N]."""
+    for key in "xy":
+
+        def read(moment: Moment, key: str = key) -> Value:
+            return -element.values(moment)[key] + 0.0 * moment.time
+
+        draft.add_channel(f"{name}.force_{key}", "N", f"force of {name} in {key}", read)
 
 
 def moving_station(effect: Effect, draft: Draft, place: str) -> Station:

@@ -10,6 +10,7 @@ from typing import ClassVar
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
+from hdrive_mbs.network.draft_torsion import Change
 from hdrive_mbs.network.moment import Moment
 
 
@@ -35,7 +36,9 @@ class MotorLag(Effect):
     def add_filter(self, draft: Draft, name: str, torque: Callable[[Moment], Value]) -> str:
         """Add the states of the filter; returns the name of y [N m]."""
 
-    def apply(self, draft: Draft, place: str, name: str) -> None:
+    def lagging(self, draft: Draft, name: str) -> Change:
+        """What the filter makes of a torque."""
+
         def change(torque: Callable[[Moment], Value]) -> Callable[[Moment], Value]:
             share = self.share
             if share == 0.0:
@@ -45,5 +48,8 @@ class MotorLag(Effect):
                 return lambda moment: moment.state(lagged)
             return lambda moment: share * moment.state(lagged) + (1.0 - share) * torque(moment)
 
-        delivered = draft.change_motor(place, change, type(self).__name__)
+        return change
+
+    def apply(self, draft: Draft, place: str, name: str) -> None:
+        delivered = draft.change_motor(place, self.lagging(draft, name), type(self).__name__)
         draft.add_channel(f"{name}.torque", "N m", f"torque that reaches the rotor of {place}", delivered)

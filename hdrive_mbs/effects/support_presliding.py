@@ -8,9 +8,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.effects.fast_sliding import followed_share
-from hdrive_mbs.effects.lateral_effect import LateralEffect, Push, Stretches
+from hdrive_mbs.effects.lateral_effect import add_force_channels, stretches_of
 from hdrive_mbs.expression import Value
+from hdrive_mbs.network.coupling import Coupling
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.stretch_rate import RateOver
@@ -21,7 +23,7 @@ _CREEP = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
-class SupportPresliding(LateralEffect):
+class SupportPresliding(Effect):
     """Dry friction between the housing of one bearing and the ground that builds up over a way: Dahl's law in the plane.
 
     F = -T z,  dz/dt = (v - |v| z)/d,  or by axis with |x'| and |y'| for |v|
@@ -43,39 +45,40 @@ class SupportPresliding(LateralEffect):
     acts_on: ClassVar[str] = "support"
     kind: ClassVar[str] = "hidden state"
     family: ClassVar[str] = "support_friction"
+    dissipative: ClassVar[bool] = True
     signature: ClassVar[str] = "a support that is stiffer for small vibration than for large, with a loss in between"
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"presliding": (1e-6, 1e-5), "by_axis": (False, True)}
 
-    def force(self, time: Value, angle: Value, speed: Value, x: Value, y: Value, x_rate: Value, y_rate: Value) -> tuple[Value, Value]:
-        """What is left of it without its states: nothing."""
-        return 0.0 * x, 0.0 * y
+    def _going(self, v: Mapping[str, Value], key: str) -> tuple[Value, Value]:
+        """Speed that bends the state of a direction [m/s], and the share of it that is followed."""
+        square = v[key] * v[key] if self.by_axis else v["x"] * v["x"] + v["y"] * v["y"]
+        size = np.sqrt(square + _CREEP**2)
+        return size, followed_share(size / self.presliding, self.fastest_rate)
 
-    def pushing(self, draft: Draft, stretches: Stretches, name: str) -> Push:
-        def going(v: Mapping[str, Value], key: str) -> tuple[Value, Value]:
-            square = v[key] * v[key] if self.by_axis else v["x"] * v["x"] + v["y"] * v["y"]
-            size = np.sqrt(square + _CREEP**2)
-            return size, followed_share(size / self.presliding, self.fastest_rate)
+    def apply(self, draft: Draft, place: str, name: str) -> None:
+        found = stretches_of(self, draft, place)
+        stretches = {key: found[key] for key in "xy"}
+        states: dict[str, str] = {}
 
         def rate(key: str) -> RateOver:
             def of(moment: Moment, s: Mapping[str, Value], v: Mapping[str, Value]) -> Value:
-                size, share = going(v, key)
+                size, share = self._going(v, key)
                 return share * (v[key] - size * moment.state(states[key])) / self.presliding
 
             return of
 
-        states = {key: f"{name}.bent_{key}" for key in "xy"}
+        def forces(moment: Moment, s: Mapping[str, Value], v: Mapping[str, Value]) -> Mapping[str, Value]:
+            resisting = {}
+            for key in "xy":
+                size, share = self._going(v, key)
+                resisting[key] = self.coulomb * (share * moment.state(states[key]) + (1.0 - share) * v[key] / size)
+            return resisting
+
+        def stored(moment: Moment) -> Value:
+            return 0.5 * self.coulomb * self.presliding * sum(moment.state(state) ** 2 for state in states.values())
+
         for key in "xy":
-            states[key] = draft.add_stretch_state(states[key], name, stretches, rate(key), unit="1")
-
-        def push(
-            moment: Moment, time: Value, angle: Value, speed: Value, x: Value, y: Value, x_rate: Value, y_rate: Value
-        ) -> tuple[Value, Value]:
-            v = {"x": x_rate, "y": y_rate}
-
-            def along(key: str) -> Value:
-                size, share = going(v, key)
-                return share * moment.state(states[key]) + (1.0 - share) * v[key] / size
-
-            return -self.coulomb * along("x"), -self.coulomb * along("y")
-
-        return push
+            states[key] = draft.add_stretch_state(f"{name}.bent_{key}", name, stretches, rate(key), unit="1")
+        element = Coupling(name, stretches, forces, self.dissipative, stored)
+        draft.add_element(element)
+        add_force_channels(draft, name, element)

@@ -24,7 +24,7 @@ class SupportStiffnessDrift(SupportEffect):
     beginning as well has a SupportStiffnessChange beside it.
 
     Source: a body of one heat capacity that warms at a constant rate (Newton's law of cooling), its stiffness in proportion to its
-    temperature in the first order; rubber and bolted feet do so.  Leaves out that the loss itself changes with the run, and every
+    temperature in the first order.  Leaves out that the loss itself changes with the run, and every
     run starts cold at t = 0.  The force of gravity on the housing stays, so the housing sinks or rises as the stiffness changes.
     """
 

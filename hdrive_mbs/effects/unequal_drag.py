@@ -23,8 +23,8 @@ class UnequalDrag(TorqueEffect):
     so the drag is larger by c |w| and the friction by T forward than backward, and their mean is as in the model.  Drag in one
     sense only is c with half of it as ViscousDrag.  Backwards the effect itself drives, which the drag of the model must outweigh.
 
-    Source: friction identified by sense of rotation, as usual for robot joints (e.g. Bittencourt, Gunnarsson, ASME J. Dyn. Sys. 134
-    (2012) 051013: lip seals, preloaded and skew teeth).  Leaves out a drop with speed (PreslidingFriction has both).
+    Source: friction identified for each sense of rotation, as usual for robot joints, e.g. Armstrong-Helouvry, Control of Machines with
+    Friction (1991).  Leaves out a drop with speed (PreslidingFriction has both).
     """
 
     viscous: float = parameter("N m s/rad", "c, more drag forward than backward", default=0.0, low=-1e3, high=1e3, typical=(-1.0, 1.0))

@@ -204,7 +204,8 @@ class Network:
     def turning(self) -> Network:
         """The torsional network alone: what turns, and the elements and states that touch nothing else.
 
-        Raises LawError for a torque that depends on a state which goes on with the rotation (``Draft.add_running_state``).
+        Raises LawError for a torque that depends on a state which goes on with the rotation (``Draft.add_running_state``), and for a state
+        of the turning that follows what moves across the axis.
         """
         running = {element.state for element in self.elements if isinstance(element, RunningRate)}
         if not self.is_lateral and not running:
@@ -217,6 +218,7 @@ class Network:
         states = tuple(state for state in self.states if state.name not in moving)
         if running:
             _refuse_running(kept, running)
+        _refuse_across(kept, lateral)
         return replace(self, bodies=bodies, states=states, elements=kept, rotors=(), channels=())
 
     @property
@@ -251,14 +253,29 @@ class Network:
         )
 
 
+def _reads(element: Element) -> set[str]:
+    """Variables that an element depends on, by the names of ``recording_moment``."""
+    try:
+        return {name for value in element.contribution(recording_moment()).values() for name in variables(record(value))}
+    except Exception:  # a law that cannot be recorded: whatever it raises, it raises again where it is used
+        return set()
+
+
+def _refuse_across(elements: Sequence[Element], lateral: set[str]) -> None:
+    """Raise LawError for the equation of a state that depends on motion across the axis and does not say along what."""
+    across = {f"{what}:{name}" for what in ("angle", "speed") for name in lateral}
+    for equation in (element for element in elements if isinstance(element, StateRate)):
+        for name in sorted(_reads(equation) & across):
+            raise LawError(
+                f"{equation.state}: its rate depends on {name.partition(':')[2]!r}, which moves across the axis, so that steady rotation has"
+                " no place for it. Make it with add_stretch_state(name, of, stretches, rate, unit=...), which says along what it follows."
+            )
+
+
 def _refuse_running(elements: Sequence[Element], running: set[str]) -> None:
     """Raise LawError for an element of a steady network that depends on a state which does not come to rest."""
     for element in elements:
-        try:
-            found = {name for value in element.contribution(recording_moment()).values() for name in variables(record(value))}
-        except Exception:  # a law that cannot be recorded: whatever it raises, it raises again where it is used
-            continue
-        for name in sorted(found & {f"state:{state}" for state in running}):
+        for name in sorted(_reads(element) & {f"state:{state}" for state in running}):
             raise LawError(
                 f"{element.name}: its torque depends on the state {name.removeprefix('state:')!r}, which goes on with the rotation, so that"
                 " nothing stands still where the train turns steadily. Such states (add_running_state) are for forces that shake the line"

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
+from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
 from hdrive_mbs.compiled.line import CompiledLine
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.effects.places import PLACES
@@ -216,6 +217,14 @@ def test_it_runs_without_a_python_callback(example: Example) -> None:
         warnings.simplefilter("error", LoweringWarning)
         lowered = assemble(network).lowered
     assert {item.how for item in lowered} <= {"native", "symbolic"}
+
+
+def test_steady_rotation_has_a_place_for_it(example: Example) -> None:
+    """The line hangs at rest somewhere with it, and nothing is left of the forces there but on the spin."""
+    scene = placed(example)
+    network, at = scene.network(), rotor_point(scene, START_SPEED)
+    assert set(at.states) == {state.name for state in network.states}
+    assert all(np.isfinite([*at.angles.values(), *at.states.values()]))
 
 
 def test_of_size_zero_it_changes_nothing(example: Example) -> None:

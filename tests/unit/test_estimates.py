@@ -24,7 +24,16 @@ def told(effect: Effect, at: str, *vague: str) -> dict[str, bool]:
     z = hypothesis.start()
     curvature = np.diag(np.where(loose, 1e-2, 1e4))
     fitted = Fitted(
-        hypothesis=hypothesis, z=z, residuals=np.empty(0), cost=0.0, curvature=curvature, converged=True, steps=1, chi_fit=1.0, chi_held=1.0
+        hypothesis=hypothesis,
+        z=z,
+        residuals=np.empty(0),
+        cost=0.0,
+        curvature=curvature,
+        converged=True,
+        steps=1,
+        chi_fit=1.0,
+        chi_held=1.0,
+        typical=1.0,
     )
     improved = hypothesis.scene(scene(), z)
     return {item.name.removeprefix("x."): item.identifiable for item in effect_estimates(fitted, improved, "x")}

@@ -99,6 +99,7 @@ def fitted(simulator: Simulator, z: np.ndarray = ORIGIN) -> Fitted:
         steps=0,
         chi_fit=1.0,
         chi_held=1.0,
+        typical=1.0,
     )
 
 

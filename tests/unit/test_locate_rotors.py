@@ -106,7 +106,16 @@ def localiser(*forces: KnownForce, errors: dict[str, np.ndarray] | None = None, 
     found = simulator.residuals(NOMINAL, [ORIGIN])[0]
     assert found is not None
     null = Fitted(
-        hypothesis=NOMINAL, z=ORIGIN, residuals=found, cost=0.0, curvature=np.eye(3), converged=True, steps=0, chi_fit=1.0, chi_held=1.0
+        hypothesis=NOMINAL,
+        z=ORIGIN,
+        residuals=found,
+        cost=0.0,
+        curvature=np.eye(3),
+        converged=True,
+        steps=0,
+        chi_fit=1.0,
+        chi_held=1.0,
+        typical=1.0,
     )
     return Localiser(simulator, null)
 

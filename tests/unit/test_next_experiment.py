@@ -126,6 +126,7 @@ def as_given(hypothesis: Hypothesis) -> Fitted:
         steps=0,
         chi_fit=1.0,
         chi_held=1.0,
+        typical=1.0,
     )
 
 

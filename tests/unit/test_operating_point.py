@@ -221,6 +221,15 @@ def test_a_lag_of_the_motor_does_not_change_where_it_balances_the_load() -> None
     assert lagging.states["actuator_lag.lagged"] == pytest.approx(20.0 / 100.0, rel=1e-9)
 
 
+def test_a_lag_of_the_load_does_not_change_where_the_motor_balances_it() -> None:
+    plain = hm.operating_point(drive_train())
+    lagging = hm.operating_point(drive_train().with_effect(hm.LoadLag(time_constant=0.01), at="load"))
+    assert lagging.motor_speed == pytest.approx(plain.motor_speed, rel=1e-9)
+    assert lagging.torques == pytest.approx(dict(plain.torques), rel=1e-9)
+    # in the forward sense the load of 20 N m drives with -20
+    assert abs(lagging.states["load_lag.lagged"]) == pytest.approx(20.0, rel=1e-9)
+
+
 def test_friction_in_the_mesh_is_carried_by_the_motor_and_does_not_hold_the_train() -> None:
     plain = hm.operating_point(drive_train())
     friction = hm.MeshFriction(loss_factor=0.2, no_load=0.05)
