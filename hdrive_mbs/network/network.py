@@ -267,7 +267,7 @@ def _refuse_across(elements: Sequence[Element], lateral: set[str]) -> None:
     for equation in (element for element in elements if isinstance(element, StateRate)):
         for name in sorted(_reads(equation) & across):
             raise LawError(
-                f"{equation.state}: its rate depends on {name.partition(':')[2]!r}, which moves across the axis, so that steady rotation has"
+                f"{equation.state}: its rate depends on {name.partition(':')[2]!r}, which moves across the axis, so steady rotation has"
                 " no place for it. Make it with add_stretch_state(name, of, stretches, rate, unit=...), which says along what it follows."
             )
 
