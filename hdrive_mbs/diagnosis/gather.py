@@ -37,7 +37,10 @@ a second has to take away before the first is looked for again beside it."""
 SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 """Of the search for a second cause."""
 SINGLES = 3
-"""Labels that are fitted on all samples."""
+"""Labels that are fitted on all samples at least."""
+ALIKE = 6
+"""Labels that the search cannot tell from the best, which are fitted on all samples besides: all stations of a line that is stiff in
+torsion, say, where only some of them would be named as tied otherwise."""
 CLOSE = 0.02
 """Share of the best law's log odds within which another law of the same cause is fitted on all samples too."""
 JOINED = 3
@@ -70,6 +73,15 @@ def wants_second(null: Fitted, first: Found, samples: int) -> bool:
     samples : fitted ones; noise alone costs half of their number
     """
     return first.log_odds > TAKEN * max(null.cost - 0.5 * samples, 0.0) and left(first.fitted) > enough(null, LEFT)
+
+
+def serious(labels: Sequence[Found]) -> tuple[Found, ...]:
+    """The best labels, and those behind them that the search could not tell from the first.
+
+    labels : the best law of each label, best first
+    """
+    tied = sum(item.log_odds > labels[0].log_odds - TIED for item in labels)
+    return tuple(labels[: max(SINGLES, min(tied, ALIKE))])
 
 
 def close_laws(found: Sequence[Found]) -> tuple[Found, ...]:
@@ -215,12 +227,12 @@ def gather(
     single = _with(single, others)
     if double and not wants_second(null, single.found[0], int(np.count_nonzero(coarse.fit))):
         double = ()  # its second cause stood beside a wrong first one: had it been found at once, no other would have been looked for
-    serious = (*single.labels[:SINGLES], *close_laws(single.found))
-    last = on_all_samples(team, fine, null, [item.fitted for item in (*serious, *double)], place, partial(said, "all samples"))
+    ones = (*serious(single.labels), *close_laws(single.found))
+    last = on_all_samples(team, fine, null, [item.fitted for item in (*ones, *double)], place, partial(said, "all samples"))
     final = [
         None if fitted is None else scored(Found(item.suspect, fitted), last.refitted)
-        for item, fitted in zip((*serious, *double), last.others, strict=True)
+        for item, fitted in zip((*ones, *double), last.others, strict=True)
     ]
-    singles = sorted(filter(None, final[: len(serious)]), key=lambda item: -item.log_odds)
-    pairs = tuple(sorted(filter(None, final[len(serious) :]), key=lambda item: -item.log_odds))
+    singles = sorted(filter(None, final[: len(ones)]), key=lambda item: -item.log_odds)
+    pairs = tuple(sorted(filter(None, final[len(ones) :]), key=lambda item: -item.log_odds))
     return Evidence(fine, last.nominal, last.refitted, single, pair, tuple(singles), pairs, last.place)

@@ -21,7 +21,7 @@ from hdrive_mbs.diagnosis.diagnose import factors_of, strongest_first
 from hdrive_mbs.diagnosis.differences import jacobian
 from hdrive_mbs.diagnosis.fit import Fitted, fit, secant
 from hdrive_mbs.diagnosis.from_the_best import bent, other_laws, unfinished
-from hdrive_mbs.diagnosis.gather import close_laws, wants_second
+from hdrive_mbs.diagnosis.gather import ALIKE, SINGLES, close_laws, serious, wants_second
 from hdrive_mbs.diagnosis.ground import LIKELY, held, is_bent, screen_from
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
@@ -897,3 +897,13 @@ def test_other_places_of_the_best_families_that_looks_passed_over_are_named(near
 
 def look_at(place: str) -> Look:
     return Look(drags(place), np.zeros(1), 1.0, np.zeros(1), drags(place))
+
+
+@pytest.mark.parametrize(("tied", "kept"), [(1, SINGLES), (SINGLES + 1, SINGLES + 1), (ALIKE + 2, ALIKE)])
+def test_places_that_the_search_cannot_tell_apart_all_go_on_to_all_samples(simulator: Simulator, tied: int, kept: int) -> None:
+    hypothesis = Hypothesis(factors_of(BENCH))
+    fitted = fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=0)
+    odds = [50.0 - 0.01 * k if k < tied else 10.0 - k for k in range(ALIKE + 4)]
+    labels = [Found(Suspect(("drag", f"place {k}"), "A", (hypothesis,), (hypothesis,)), fitted, some) for k, some in enumerate(odds)]
+    assert serious(labels) == tuple(labels[:kept])
+    assert serious([]) == ()
