@@ -17,6 +17,7 @@ from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, rest
 from hdrive_mbs.diagnosis.ground import held, is_bent, screen_from
 from hdrive_mbs.diagnosis.hops import settled
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.other_starts import from_other_starts
 from hdrive_mbs.diagnosis.periods import Periods
 from hdrive_mbs.diagnosis.scans import fits_from, scan, worth_a_scan
 from hdrive_mbs.diagnosis.screening import Look, Screen
@@ -113,9 +114,11 @@ def search(
     One simple law stands for each label in the first look.  The best labels are looked at with all laws and starts,
     the best of those get a few joint steps with their own Jacobians, and the best of these are fitted to the end.  Where they
     leave something, the places of their families that were passed over are fitted too.
+    Where these leave something, the other laws of the best label are tried from its values, and all of them begin again from other
+    values of what decides whether they show (other_starts.py).
     Where all of them leave something, the same is done with the likeliest, the parameters held near the values of the data sheet.
-    What came out best is then tried with the other laws of its family and at all other places where it may sit, from the values
-    found; in a shallow search the latter only where it leaves much.
+    What came out best is then tried at all other places where it may sit, from the values found; in a shallow search only where it
+    leaves much.
     A shallow search begins with held parameters where those of the base are bent.
 
     begin : of the simulator and a fitted model, what says where laws with a period begin
@@ -125,13 +128,12 @@ def search(
     everything = suspects(base.hypothesis, groups, tried)
     known = work.scanned(everything) if how.laws > 1 and base.chi_fit > NEAR else []
     found, first = work.from_grounds(base, everything) if how.laws == 1 else work.from_ground(base, base, everything, known)
+    found = work.other_ways(found, base, everything)
     looks = {f"{suspect.law} at {suspect.label[1]}": cost for suspect, cost in first}
     if how.laws > 1 and how.again and base.chi_fit > FAR and not any(item.fitted.typical < enough(base, ENOUGH) for item in found):
         likely = {suspect.label for suspect, _ in first[:SECOND_LOOKS]}
         more, _ = work.from_ground(held(simulator, base), base, [item for item in everything if item.label in likely or item.is_periodic])
-        found = cheapest([*found, *more])
-    other = other_laws(found, base, everything) if is_inexact(found, base) else []
-    found = cheapest([*found, *work.fitted(other, "trying other laws of the best")])
+        found = work.other_ways(cheapest([*found, *more]), base, everything)
     if how.laws > 1 or (found and found[0].fitted.chi_fit > FAR):
         moved = elsewhere(found[0] if found else None, base, everything) + (restarts(found, FAR) if how.laws > 1 and how.again else [])
         found = cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
@@ -159,6 +161,7 @@ class _Work:
     said: Report
     how: Depth
     begin: Begin
+    _elsewhere: set[tuple[Label, str]] = field(default_factory=set)
 
     def scanned(self, everything: Sequence[Suspect]) -> list[Found]:
         """Parameters tried all along their range, the best of them fitted from there."""
@@ -217,6 +220,22 @@ class _Work:
         if found and leaves(found[0].fitted.typical, base, ENOUGH):
             found = cheapest([*found, *self._others(passed_over(found, first, chosen))])
         return found, [(suspect, look.cost) for suspect, look in first]
+
+    def other_ways(self, found: list[Found], base: Fitted, everything: Sequence[Suspect]) -> list[Found]:
+        """What was found and, where it leaves something, the other laws of the best label, and these laws begun elsewhere.
+
+        Those that came nearest in their first steps from other values of what decides whether they show are fitted on, as far as they
+        are not hopeless beside the best.
+        """
+        if not is_inexact(found, base):
+            return found
+        found = cheapest([*found, *self.fitted(other_laws(found, base, everything), "trying other laws of the best")])
+        asked = from_other_starts(found, everything, self._elsewhere)
+        self._elsewhere.update((suspect.label, suspect.law) for suspect, _ in asked)
+        begun = sorted(self.fitted(asked, "beginning the best elsewhere"), key=lambda item: item.fitted.cost)
+        near = [item for item in begun if not beyond(item.fitted, found[0].fitted)][: self.how.serious]
+        going = [(item.suspect, further(item.fitted, 2 * STEPS)) for item in near]
+        return cheapest([*found, *begun, *self.fitted(going, "fitting on from there")])
 
     def _others(self, looks: Sequence[tuple[Suspect, Look]]) -> list[Found]:
         """A few joint steps from looks, and the best of them fitted to the end."""

@@ -1,0 +1,78 @@
+"""The best laws again from other values of what decides whether they show: a hollow of one value ends a fit far from the records.
+
+A crack that the bending moment shuts is open by half whatever its side where the moment over which it shuts is large, so from the wrong
+side a fit ends there.  In our own seventh rotor set (c06, labels open) such a fit left 20; turned by half a turn, with all else as it
+was, two steps led to 3.3 and eight to 1.17.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Collection, Sequence
+
+from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis, searched_fields
+from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect
+from hdrive_mbs.diagnosis.tasks import FINE, FIRST, Found, Task
+from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import ParameterError
+
+LAWS = 3
+"""Laws of the best label that begin elsewhere again."""
+MOST = 7
+"""Other starts of each, the nearest ones."""
+
+
+def from_other_starts(
+    found: Sequence[Found], everything: Sequence[Suspect], done: Collection[tuple[Label, str]] = ()
+) -> list[tuple[Suspect, Task]]:
+    """Laws of the best label with other start values in their decisive fields and what was found for all else, for their first steps.
+
+    found : fitted laws, best first;  done : laws at places that this was asked of before
+    """
+    if not found or found[0].suspect.law == PARAMETER:
+        return []
+    alike = [item for item in found if item.suspect.label == found[0].suspect.label and item.suspect.law != PARAMETER][:LAWS]
+    starts_of = {(suspect.label, suspect.law): suspect.all for suspect in everything}
+    tasks = []
+    for item in alike:
+        key = item.suspect.label, item.suspect.law
+        if key in done or key not in starts_of:
+            continue
+        hypothesis, z = item.fitted.hypothesis.rescaled(item.fitted.z)
+        *before, last = hypothesis.added
+        for effect in others(last.effect, [start.added[-1].effect for start in starts_of[key]]):
+            changed = Hypothesis(hypothesis.factors, (*before, Added(effect, last.at, last.name)), hypothesis.loose)
+            tasks.append((item.suspect, Task(changed, changed.start(hypothesis.nominal_part(z)), None, FIRST, FINE)))
+    return tasks
+
+
+def others(effect: Effect, starts: Sequence[Effect]) -> list[Effect]:
+    """An effect with each combination of the start values of its decisive fields but the one that it is nearest to, nearest first.
+
+    Those that are not allowed and all beyond the first few are left out.
+
+    starts : of its search, which are thinned out: where the law itself names values, all of these count
+    """
+    kind, shapes = type(effect), searched_fields(type(effect))
+    names = [name for name in kind.decisive if name in shapes]
+    values = [kind.starts.get(name) or tuple(dict.fromkeys(getattr(start, name) for start in starts)) for name in names]
+
+    def apart(some: tuple[float, ...]) -> float:
+        return math.hypot(*(_apart(effect, name, value, shapes[name].unit) for name, value in zip(names, some, strict=True)))
+
+    made = []
+    for some in sorted(itertools.product(*values), key=apart)[1 : MOST + 1]:
+        try:
+            made.append(effect.replacing(**dict(zip(names, some, strict=True))))
+        except ParameterError:
+            continue
+    return made
+
+
+def _apart(effect: Effect, name: str, value: float, unit: str) -> float:
+    """How far a field is from a value: of an angle the shorter way round, of a size by its logarithm."""
+    own = float(getattr(effect, name))
+    if unit == "rad":
+        return abs(math.remainder(own - value, math.tau))
+    return abs(math.log(own / value)) if own > 0.0 and value > 0.0 else abs(own - value)
