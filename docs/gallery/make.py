@@ -43,14 +43,24 @@ def drawn(name: str) -> Axes:
     return axes
 
 
+MARK = "-- next block --"
+
+
 @functools.cache
-def ran(page: str) -> dict[str, Any]:
-    """What the Python code of a page of docs/tutorials/ leaves behind when it is run from top to bottom."""
+def run(page: str) -> tuple[dict[str, Any], list[str]]:
+    """What the Python code of a page of docs/tutorials/ leaves behind when it is run from top to bottom, and what each block prints."""
     text = (HERE.parent / "tutorials" / f"{page}.md").read_text("utf-8")
-    code = "\n".join(re.findall(r"^```python\n(.*?)^```$", text, re.S | re.M))
-    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), contextlib.redirect_stdout(io.StringIO()):
+    code = f'print("{MARK}")\n'.join(re.findall(r"^```python\n(.*?)^```$", text, re.S | re.M))
+    printed = io.StringIO()
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), contextlib.redirect_stdout(printed):
         Path("page.py").write_text(code, "utf-8")
-        return runpy.run_path("page.py")
+        left = runpy.run_path("page.py")
+    return left, printed.getvalue().split(f"{MARK}\n")
+
+
+def ran(page: str) -> dict[str, Any]:
+    """What the Python code of a page of docs/tutorials/ leaves behind."""
+    return run(page)[0]
 
 
 def picture(axes: Axes) -> Image.Image:
