@@ -154,7 +154,7 @@ def is_inexact(found: Sequence[Found], base: Fitted) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class _Work:
-    """Who does it, on what, and how far it goes."""
+    """Who does it, on what, and how far it goes; ``_elsewhere`` keeps which laws at which places were begun elsewhere already."""
 
     team: Team
     simulator: Simulator

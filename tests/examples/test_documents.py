@@ -31,11 +31,15 @@ EXAMPLES = [
 ]
 
 
-@pytest.mark.parametrize("code", EXAMPLES)
-def test_example_runs_as_printed(code: str, tmp_path: Path) -> None:
+def skip_without_extras(code: str) -> None:
     for module in ("h5py", "pyarrow", "asammdf"):
         if re.search(rf"^import {module}\b", code, re.MULTILINE):
             pytest.importorskip(module, reason='needs the extra: pip install -e ".[records]"')
+
+
+@pytest.mark.parametrize("code", EXAMPLES)
+def test_example_runs_as_printed(code: str, tmp_path: Path) -> None:
+    skip_without_extras(code)
     script = tmp_path / "example.py"
     script.write_text(code, "utf-8")
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}

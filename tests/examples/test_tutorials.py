@@ -11,7 +11,7 @@ import pytest
 from docs.gallery.make import names, run
 from hdrive_mbs.engine.assembly import LoweringWarning
 from tests.examples.quotations import missing
-from tests.examples.test_documents import TUTORIALS, blocks
+from tests.examples.test_documents import TUTORIALS, blocks, skip_without_extras
 from tests.examples.test_gallery import check_picture, of_tutorial
 
 PICTURES = {path.stem: [name for name in names() if of_tutorial(name) == path.stem] for path in TUTORIALS}
@@ -21,9 +21,7 @@ PICTURES = {path.stem: [name for name in names() if of_tutorial(name) == path.st
 def test_a_tutorial_prints_what_it_quotes_and_makes_its_pictures(path: Path) -> None:
     """A block of text that follows a block of code is what that code prints; a line ``...`` stands for lines left out."""
     text = path.read_text("utf-8")
-    for module in ("h5py", "pyarrow", "asammdf"):
-        if re.search(rf"^import {module}\b", text, re.MULTILINE):
-            pytest.importorskip(module, reason='needs the extra: pip install -e ".[records]"')
+    skip_without_extras(text)
     pieces = re.findall(r"^```python\n(.*?)^```\n(?:\n```text\n(.*?)^```$)?", text, re.S | re.M)
     assert [code for code, _ in pieces] == blocks(path)
     quoted = [quote for _, quote in pieces]
