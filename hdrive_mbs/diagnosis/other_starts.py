@@ -32,7 +32,7 @@ def from_other_starts(
     """
     if not found or found[0].suspect.law == PARAMETER:
         return []
-    alike = [item for item in found if item.suspect.label == found[0].suspect.label and item.suspect.law != PARAMETER][:LAWS]
+    alike = [item for item in found if item.suspect.label == found[0].suspect.label][:LAWS]
     starts_of = {(suspect.label, suspect.law): suspect.all for suspect in everything}
     tasks = []
     for item in alike:

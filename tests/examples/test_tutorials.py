@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
+import json
+import os
+import pickle
 import re
-import warnings
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from docs.gallery.make import names, run
-from hdrive_mbs.engine.assembly import LoweringWarning
 from tests.examples.quotations import missing
-from tests.examples.test_documents import TUTORIALS, blocks, skip_without_extras
-from tests.examples.test_gallery import check_picture, of_tutorial
-
-PICTURES = {path.stem: [name for name in names() if of_tutorial(name) == path.stem] for path in TUTORIALS}
+from tests.examples.test_documents import ROOT, TUTORIALS, blocks, skip_without_extras
+from tests.examples.test_gallery import NAMES, check_picture, of_tutorial
+from tests.patience import PATIENCE
 
 
 @pytest.mark.parametrize("path", TUTORIALS, ids=lambda path: path.name)
-def test_a_tutorial_prints_what_it_quotes_and_makes_its_pictures(path: Path) -> None:
+def test_a_tutorial_prints_what_it_quotes_and_makes_its_pictures(path: Path, tmp_path: Path) -> None:
     """A block of text that follows a block of code is what that code prints; a line ``...`` stands for lines left out."""
     text = path.read_text("utf-8")
     skip_without_extras(text)
@@ -26,15 +27,19 @@ def test_a_tutorial_prints_what_it_quotes_and_makes_its_pictures(path: Path) -> 
     assert [code for code, _ in pieces] == blocks(path)
     quoted = [quote for _, quote in pieces]
     assert len(re.findall(r"^```text$", text, re.M)) == sum(map(bool, quoted)) >= 2, "text is quoted that follows no code"
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", LoweringWarning)
-        _, printed = run(path.stem)
+    names = [name for name in NAMES if of_tutorial(name) == path.stem]
+    command = [sys.executable, "-m", "tests.examples.tutorial_process", path.stem, tmp_path, *names]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=PATIENCE)
+    assert done.returncode == 0, done.stderr
+    assert "LoweringWarning" not in done.stderr
+    printed = json.loads((tmp_path / "printed.json").read_text("utf-8"))
     assert len(printed) == len(quoted)
     for quote, output in zip(quoted, printed, strict=True):
         if quote:
             assert not missing(quote, output), output
-    for name in PICTURES[path.stem]:
-        check_picture(name)
+    for name in names:
+        check_picture(name, pickle.loads((tmp_path / f"{name}.pickle").read_bytes()))
 
 
 def test_a_quotation_with_another_word_or_number_is_noticed() -> None:

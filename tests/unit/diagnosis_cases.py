@@ -15,6 +15,8 @@ import numpy as np
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
+from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.hypothesis import FloatArray, Hypothesis
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.records.measurement import Measurement
@@ -156,3 +158,19 @@ def _record(
 def quiet() -> tuple[Record, ...]:
     """Records without any cause."""
     return records()
+
+
+def standing(hypothesis: Hypothesis, curvature: FloatArray) -> Fitted:
+    """A hypothesis at its start values, as if records had left it there, with what they say of its parameters."""
+    return Fitted(
+        hypothesis=hypothesis,
+        z=hypothesis.start(),
+        residuals=np.zeros(0),
+        cost=0.0,
+        curvature=curvature,
+        converged=True,
+        steps=0,
+        chi_fit=1.0,
+        chi_held=1.0,
+        typical=1.0,
+    )

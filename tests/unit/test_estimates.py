@@ -7,11 +7,10 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.estimates import effect_estimates
-from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.effects.hidden_mode import HiddenMode
-from tests.unit.diagnosis_cases import scene
+from tests.unit.diagnosis_cases import scene, standing
 
 
 def told(effect: Effect, at: str, *vague: str) -> dict[str, bool]:
@@ -21,21 +20,9 @@ def told(effect: Effect, at: str, *vague: str) -> dict[str, bool]:
     """
     hypothesis = Hypothesis((), (Added(effect, at, "x"),))
     loose = np.concatenate([np.full(item.size, item.path in {f"x.{name}" for name in vague}) for item in hypothesis.unknowns])
-    z = hypothesis.start()
     curvature = np.diag(np.where(loose, 1e-2, 1e4))
-    fitted = Fitted(
-        hypothesis=hypothesis,
-        z=z,
-        residuals=np.empty(0),
-        cost=0.0,
-        curvature=curvature,
-        converged=True,
-        steps=1,
-        chi_fit=1.0,
-        chi_held=1.0,
-        typical=1.0,
-    )
-    improved = hypothesis.scene(scene(), z)
+    fitted = standing(hypothesis, curvature)
+    improved = hypothesis.scene(scene(), fitted.z)
     return {item.name.removeprefix("x."): item.identifiable for item in effect_estimates(fitted, improved, "x")}
 
 

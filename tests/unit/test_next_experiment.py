@@ -31,6 +31,7 @@ from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.records.measurement import Measurement
 from hdrive_mbs.records.record import Record
 from tests.unit import rotor_scenes
+from tests.unit.diagnosis_cases import standing
 
 EVERY, STEP, SECONDS = 1e-3, 5e-4, 1.0
 """Sample time, step of the integration and length of the records [s]."""
@@ -115,19 +116,7 @@ def shown(hypothesis: Hypothesis, z: FloatArray, *plans: Plan, rng: np.random.Ge
 
 def as_given(hypothesis: Hypothesis) -> Fitted:
     """A hypothesis at its start values, as if records had left it there without saying anything of its parameters."""
-    z, nothing = hypothesis.start(), np.zeros((hypothesis.size, hypothesis.size))
-    return Fitted(
-        hypothesis=hypothesis,
-        z=z,
-        residuals=np.zeros(0),
-        cost=0.0,
-        curvature=nothing,
-        converged=True,
-        steps=0,
-        chi_fit=1.0,
-        chi_held=1.0,
-        typical=1.0,
-    )
+    return standing(hypothesis, np.zeros((hypothesis.size, hypothesis.size)))
 
 
 @functools.cache
