@@ -182,6 +182,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.moment_crack": ("MomentCrack",),
     "effects.phased_crack": ("PhasedCrack",),
     "effects.steep_crack": ("SteepCrack",),
+    "effects.keyway": ("Keyway",),
     "effects.whole_shaft_effect": ("WholeShaftEffect",),
     "effects.internal_damping": ("InternalDamping",),
     "effects.relaxing_damping": ("RelaxingDamping",),

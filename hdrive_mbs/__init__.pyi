@@ -144,6 +144,7 @@ from hdrive_mbs.effects.inner_race_pulses import InnerRacePulses as InnerRacePul
 from hdrive_mbs.effects.internal_damping import InternalDamping as InternalDamping
 from hdrive_mbs.effects.iwan_hysteresis import IwanHysteresis as IwanHysteresis
 from hdrive_mbs.effects.joint_slip import JointSlip as JointSlip
+from hdrive_mbs.effects.keyway import Keyway as Keyway
 from hdrive_mbs.effects.kinematic_error import KinematicError as KinematicError
 from hdrive_mbs.effects.lateral_effect import LateralEffect as LateralEffect
 from hdrive_mbs.effects.load_lag import LoadLag as LoadLag

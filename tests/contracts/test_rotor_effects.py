@@ -83,6 +83,7 @@ EXAMPLES = {
         Example(hm.BreathingCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, steepness=2.0), "first", ("compliance",)),
         Example(hm.MomentCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, closing_moment=3.0), "first", ("compliance",)),
         Example(hm.SteepCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, steepness=2.0), "first", ("compliance",)),
+        Example(hm.Keyway(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0), "first", ("compliance",)),
         Example(hm.PhasedCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, phase=0.7), "first", ("compliance",)),
         Example(hm.InternalDamping(time=1e-3), "first", ("time",)),
         Example(hm.RelaxingDamping(time=1e-3, relaxation_time=2e-3), "first", ("time",)),

@@ -509,10 +509,15 @@ LEVER = 0.5 * 0.7 * LENGTH / 2.0
 """Bending moment at the crack per load in the middle: P/2 times the distance from the pin [m]."""
 
 
-def test_open_crack_is_a_hinge_between_two_beams() -> None:
-    """Stiffness of the piece with the crack in the plane of the front: two beams and a spring of 1/c between, condensed."""
+@pytest.mark.parametrize(
+    "hinge",
+    [cracked(0.0, always_open=True, cross_share=0.0), hm.Keyway(compliance=2e-6, position=0.7)],
+    ids=["crack", "keyway"],
+)
+def test_what_is_always_open_is_a_hinge_between_two_beams(hinge: Effect) -> None:
+    """Stiffness of the piece with the hinge in the plane of the front: two beams and a spring of 1/c between, condensed."""
     share, compliance = 0.7, 2e-6
-    scene = pinned().with_effect(cracked(0.0, always_open=True, cross_share=0.0), at="shaft_1", name="crack")
+    scene = pinned().with_effect(hinge, at="shaft_1", name="hinge")
     names = ("left.x", "left.theta", "disc.x", "disc.theta")
     whole, sound = (steady(item) for item in (scene, pinned()))
     at = np.ix_(*[[whole.names.index(name) for name in names]] * 2)
@@ -565,9 +570,10 @@ def test_crack_that_follows_the_moment_shuts_where_it_is_pressed() -> None:
         cracked(0.4, always_open=True),
         cracked(0.4),
         cracked(0.4, steepness=4.0),
+        hm.Keyway(compliance=2e-6, cross_share=0.3, position=0.7, angle=0.4),
         hm.ShaftStiffnessAsymmetry(asymmetry=0.1, angle=0.4, alone=True),
     ],
-    ids=["open", "cosine", "steep", "asymmetry"],
+    ids=["open", "cosine", "steep", "keyway", "asymmetry"],
 )
 def test_forces_of_what_turns_with_the_shaft_have_a_potential(effect: Effect) -> None:
     """V = q.F(q, phi)/2 as F is linear in q; torque and forces are its derivatives, by differences."""
