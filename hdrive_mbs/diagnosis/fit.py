@@ -11,11 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.bounded import bounded_step
+from hdrive_mbs.diagnosis.curved import SHORT, End, Valley
 from hdrive_mbs.diagnosis.differences import believed, jacobian, unseen_in
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.normal_equations import normal_equations
@@ -111,7 +113,17 @@ def fit(
             systems[power] = squares, slope + precisions * z
         curvature = systems[1.0][0] if fresh else curvature
         points = _proposals(hypothesis, z, precisions, systems, damping)
-        found, costs, kept_promise = _tried(simulator, hypothesis, points, cost, _promised(points[0][0] - z, *systems[1.0], precisions))
+        promised = _promised(points[0][0] - z, *systems[1.0], precisions)
+        found, costs, kept_promise = _tried(simulator, hypothesis, points, cost, promised)
+        if cost - min(costs) < SHORT * promised:
+            parts = SHORTER[0][1]
+            straight = [End(part, points[k][0], found[k], costs[k]) for k, part in enumerate(parts)]
+            normal = systems[1.0][0] + np.diag(precisions)
+            valley = Valley(hypothesis, z, points[0][0] - z, promised, cost, columns, weights, normal, residuals[mask], mask)
+            for end in valley.followed(straight, partial(_run, simulator, hypothesis)):
+                points.append((end.point, 0.0))
+                found.append(end.residuals)
+                costs.append(end.cost)
         done += 1
         best = int(np.argmin(costs))
         chosen = found[best]
@@ -173,6 +185,12 @@ def secant(columns: FloatArray, change: FloatArray, move: FloatArray, scale: Flo
 def _cost(simulator: Simulator, hypothesis: Hypothesis, residuals: FloatArray | None, z: FloatArray) -> float:
     """Misfit of the fitted samples and priors; infinite where a point could not be run."""
     return math.inf if residuals is None else simulator.blocks.cost(residuals[simulator.fit]) + hypothesis.prior_cost(z)
+
+
+def _run(simulator: Simulator, hypothesis: Hypothesis, points: list[FloatArray]) -> list[tuple[FloatArray | None, float]]:
+    """Residuals and costs of points."""
+    runs = simulator.residuals(hypothesis, points)
+    return [(item, _cost(simulator, hypothesis, item, point)) for item, point in zip(runs, points, strict=True)]
 
 
 def _tried(
