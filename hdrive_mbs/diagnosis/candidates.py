@@ -175,17 +175,26 @@ def _few(kind: type[Effect], options: Mapping[str, tuple[Any, ...]]) -> dict[str
 
 
 def _made(kind: type[Effect], options: Mapping[str, tuple[Any, ...]]) -> Iterator[Effect]:
-    """The effect at each combination of start values that is allowed."""
-    combinations = list(itertools.product(*options.values()))
-    stride = -(-len(combinations) // MOST) if _continuous(kind) else 1
-    # one of each row of so many, another place in the next row: along a row alone a field would keep one of its values
-    rows = [combinations[first : first + stride] for first in range(0, len(combinations), stride)]
-    thinned = [row[k % stride] for k, row in enumerate(rows) if k % stride < len(row)]
-    for combination in thinned:
-        try:
-            yield kind(**dict(zip(options, combination, strict=True)))
-        except HdriveError:
-            continue
+    """The effect at each combination of start values that is allowed; where they are too many, of each value of what is decisive some."""
+    decisive = _products({name: values for name, values in options.items() if name in kind.decisive})
+    if len(decisive) > MOST:
+        decisive = [{}]
+    others = _products({name: values for name, values in options.items() if name not in decisive[0]})
+    stride = -(-len(others) // round(MOST / len(decisive))) if _continuous(kind) else 1
+    for number, values in enumerate(decisive):
+        # one of each row of so many, another place in the next row: along a row alone a field would keep one of its values
+        rows = [others[first : first + stride] for first in range(0, len(others), stride)]
+        for k, row in enumerate(rows, number):
+            if k % stride < len(row):
+                try:
+                    yield kind(**values, **row[k % stride])
+                except HdriveError:
+                    continue
+
+
+def _products(options: Mapping[str, tuple[Any, ...]]) -> list[dict[str, Any]]:
+    """Each combination of values, by field."""
+    return [dict(zip(options, some, strict=True)) for some in itertools.product(*options.values())]
 
 
 def _is_shape(name: str, quantity: Quantity, kind: type[Effect]) -> bool:

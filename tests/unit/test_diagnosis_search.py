@@ -16,7 +16,7 @@ from hdrive_mbs.diagnosis import gather as gather_
 from hdrive_mbs.diagnosis.all_samples import Last, on_all_samples
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate, candidates
-from hdrive_mbs.diagnosis.choosing import beyond, enough, passed_over, spread_out
+from hdrive_mbs.diagnosis.choosing import beyond, enough, passed_over, picked, spread_out
 from hdrive_mbs.diagnosis.diagnose import factors_of, strongest_first
 from hdrive_mbs.diagnosis.differences import jacobian
 from hdrive_mbs.diagnosis.fit import Fitted, fit, secant
@@ -884,6 +884,15 @@ def test_a_pair_is_given_up_where_its_second_cause_does_without_the_first(
     assert len(evidence.pairs) == kept
     assert (pair.fitted in asked) == bool(kept)
     assert evidence.single.found[0].suspect.label == ("quadratic_drag", "motor")
+
+
+def test_every_label_gets_its_best_law_before_any_gets_its_second() -> None:
+    empty = Hypothesis(())
+    look = Look(empty, np.zeros(0), 0.0, np.zeros(0), empty)
+    laws = [("crack", "Steep"), ("crack", "Open"), ("crack", "Phased"), ("gain", "Probe"), ("gain", "Sensor"), ("bearing", "Stiffness")]
+    looks = [(Suspect((family, "there"), law, (empty,), (empty,)), look) for family, law in laws]
+    assert [suspect.law for suspect, _ in picked(looks, laws=2)] == ["Steep", "Probe", "Stiffness", "Open", "Sensor"]
+    assert [suspect.law for suspect, _ in picked(looks, laws=1)] == ["Steep", "Probe", "Stiffness"]
 
 
 def test_other_places_of_the_best_families_that_looks_passed_over_are_named(near: Fitted) -> None:

@@ -135,6 +135,19 @@ def test_all_others_are_searched() -> None:
     }
 
 
+DECISIVE = [kind for kind in known_effects() if kind.decisive and kind.acts_on in ("shaft", "rotor", "bearing")]
+
+
+@pytest.mark.parametrize("kind", DECISIVE, ids=lambda kind: kind.__name__)
+def test_a_first_look_takes_every_value_of_what_is_decisive(kind: type[Effect]) -> None:
+    """A crack had two of its four sides, as every other one of so many starts was taken."""
+    [first, *_] = candidates(rotor_bench.bench().scene, [kind])
+    for name in kind.decisive:
+        wanted = set(kind.starts.get(name, ()))
+        assert wanted <= {getattr(item.effect, name) for item in first.first}
+        assert wanted <= {getattr(item.effect, name) for item in first.starts}
+
+
 @pytest.mark.parametrize("kind", [hm.PhasedCrack, hm.BreathingCrack, hm.MomentCrack, hm.LoadedMisalignment], ids=lambda kind: kind.__name__)
 def test_where_starts_are_thinned_out_no_field_keeps_to_a_few_of_its_values(kind: type[Effect]) -> None:
     [first, *_] = candidates(rotor_bench.bench().scene, [kind])
