@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.bounded import bounded_step
-from hdrive_mbs.diagnosis.curved import SHORT, End, Valley
+from hdrive_mbs.diagnosis.curved import SHORT, End, Run, Valley
 from hdrive_mbs.diagnosis.differences import believed, jacobian, unseen_in
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.normal_equations import normal_equations
@@ -101,10 +101,11 @@ def fit(
     curvature = np.zeros((len(z), len(z)))
     columns: FloatArray | None = None
     fresh = True  # of differences at this very point
+    followed = False  # whether curved steps were tried with it
     unseen = believed(simulator, hypothesis)
     for _ in range(0 if converged else steps):
         if columns is None:
-            columns, fresh = jacobian(simulator, hypothesis, z, residuals, unseen=unseen), True
+            columns, fresh, followed = jacobian(simulator, hypothesis, z, residuals, unseen=unseen), True, False
             unseen = list(unseen_in(simulator, hypothesis, z, residuals, columns)) if len(simulator.spans) > 1 else unseen
         weights = simulator.blocks.weights(residuals[mask])
         systems = {}
@@ -115,15 +116,15 @@ def fit(
         points = _proposals(hypothesis, z, precisions, systems, damping)
         promised = _promised(points[0][0] - z, *systems[1.0], precisions)
         found, costs, kept_promise = _tried(simulator, hypothesis, points, cost, promised)
-        if cost - min(costs) < SHORT * promised:
-            parts = SHORTER[0][1]
-            straight = [End(part, points[k][0], found[k], costs[k]) for k, part in enumerate(parts)]
-            normal = systems[1.0][0] + np.diag(precisions)
-            valley = Valley(hypothesis, z, points[0][0] - z, promised, cost, columns, weights, normal, residuals[mask], mask)
-            for end in valley.followed(straight, partial(_run, simulator, hypothesis)):
+        if fresh and not followed and len(found) == len(points):
+            followed = True
+            run = partial(_run, simulator, hypothesis)
+            valley = _valley(simulator, hypothesis, (z, residuals, cost), (columns, weights, *systems[1.0]))
+            for end in _curved(valley, points, found, costs, enough + share * cost, run):
                 points.append((end.point, 0.0))
                 found.append(end.residuals)
                 costs.append(end.cost)
+            del valley
         done += 1
         best = int(np.argmin(costs))
         chosen = found[best]
@@ -144,6 +145,7 @@ def fit(
         columns = secant(columns, chosen[mask] - residuals[mask], moved, np.diag(systems[1.0][0]) + precisions) if well else None
         fresh = False
         z, residuals, cost = points[best][0], chosen, costs[best]
+        found.clear()  # of all steps, while the next differences are made
         history.append(cost)
         if gain < enough + share * cost:
             if of_differences:
@@ -208,6 +210,41 @@ def _tried(
         if kept > AS_PROMISED:
             break
     return found, costs, kept
+
+
+def _valley(
+    simulator: Simulator,
+    hypothesis: Hypothesis,
+    point: tuple[FloatArray, FloatArray, float],
+    system: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+) -> Valley:
+    """What curved steps start from.
+
+    point : coordinates, residuals of all samples, cost;  system : J, the diagonal of W, J^T W J, J^T W r + P z
+    """
+    (z, residuals, cost), (columns, weights, squares, slope) = point, system
+    normal = squares + np.diag(hypothesis.precisions)
+    step = bounded_step(hypothesis, z, normal, slope)
+    return Valley(hypothesis, z, step, cost, columns, weights, normal, slope, residuals[simulator.fit], simulator.fit)
+
+
+def _curved(
+    valley: Valley,
+    points: Sequence[tuple[FloatArray, float]],
+    found: Sequence[FloatArray | None],
+    costs: Sequence[float],
+    worth: float,
+    run: Run,
+) -> list[End]:
+    """Ends of curved steps, where the steps that were tried keep too little of what is promised.
+
+    points, found, costs : of the proposals, which begin with the parts of the undamped step;  worth : a gain that is worth a step
+    """
+    known = min(costs)
+    if valley.promised <= worth or valley.cost - known > SHORT * valley.promised:
+        return []
+    parts = SHORTER[0][1]
+    return valley.followed([End(part, points[k][0], found[k], costs[k]) for k, part in enumerate(parts)], known, run)
 
 
 def _promised(move: FloatArray, curvature: FloatArray, slope: FloatArray, precisions: FloatArray) -> float:

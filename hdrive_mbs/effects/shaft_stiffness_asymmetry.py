@@ -1,4 +1,4 @@
-"""A shaft that bends more easily one way than across: a keyway, a flat."""
+"""A shaft that bends more easily one way than across all along a section: a flat, a long keyway."""
 
 from __future__ import annotations
 

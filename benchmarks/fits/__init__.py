@@ -1,0 +1,1 @@
+"""How fast and how far joint fits go: with curved steps, with straight ones, and scipy's."""

@@ -1,0 +1,146 @@
+"""The right law at the right place, fitted from where a search begins: by three ways, to the end."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import least_squares
+
+from benchmarks.machine import machine as about
+from benchmarks.withheld.make import make_set
+from benchmarks.withheld.methods import bench_of, records_of
+from benchmarks.withheld.names import names_of
+from hdrive_mbs.diagnosis.candidates import candidates
+from hdrive_mbs.diagnosis.curved import Valley
+from hdrive_mbs.diagnosis.diagnose import EVERY, factors_of
+from hdrive_mbs.diagnosis.differences import jacobian
+from hdrive_mbs.diagnosis.fit import fit
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.screening import Look, Screen
+from hdrive_mbs.diagnosis.search import fit_nominal
+from hdrive_mbs.diagnosis.simulator import Simulator, chi_square
+from hdrive_mbs.diagnosis.step import suitable_step
+from hdrive_mbs.diagnosis.suspects import simplest, suspects
+from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE
+
+FloatArray = npt.NDArray[np.float64]
+
+CAUSES = {
+    "drive": ("hysteresis_flexspline", "coupling_backlash", "lost_motion", "friction_mesh_load", "hidden_mode_load"),
+    "rotor": ("parameter_bearing_stiffness", "bearing_clearance", "crack", "rub", "looseness", "bearing_cross_coupling"),
+}
+"""Names of the generator, by bench: what bends valleys (springs that parameters imitate) and what has corners."""
+SEED = 2711
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A law to fit, from a look at it."""
+
+    bench: str
+    case: str
+    law: str
+    place: str
+    simulator: Simulator
+    look: Look
+
+
+def study(*, quick: bool, repeats: int) -> dict[str, Any]:
+    """Rows: bench, case, cause, law, place, way; begun, left: mean squares of the fitted samples; runs; seconds of the processor."""
+    rows: list[dict[str, Any]] = []
+    with tempfile.TemporaryDirectory() as folder:
+        for bench, names in CAUSES.items():
+            chosen = names[:1] if quick else names
+            if quick and bench != "drive":
+                continue
+            for problem, cause in _problems(bench, chosen, repeats, Path(folder) / bench):
+                begun = chi_square(problem.look.residuals, problem.simulator.fit)
+                for way, method in WAYS.items():
+                    before, start = problem.simulator.runs, time.process_time()
+                    left = method(problem.simulator, problem.look.hypothesis, problem.look.z)
+                    rows.append(
+                        {
+                            "bench": bench,
+                            "case": problem.case,
+                            "cause": cause,
+                            "law": problem.law,
+                            "place": problem.place,
+                            "way": way,
+                            "begun": begun,
+                            "left": left,
+                            "runs": problem.simulator.runs - before,
+                            "seconds": time.process_time() - start,
+                        }
+                    )
+    return {"about": about(), "seed": SEED, "repeats": repeats, "rows": rows}
+
+
+def _problems(bench: str, names: tuple[str, ...], repeats: int, folder: Path) -> Iterator[tuple[Problem, str]]:
+    """Of each cause the law that a search looks at first, at the right place; causes whose place has none are left out."""
+    labels = make_set(bench, repeats * len(names), SEED, folder, names=names)
+    known, meant = bench_of(bench), names_of(bench)
+    for case in sorted(labels):
+        [truth] = labels[case]["truth"]
+        trials = [trial for record in records_of(folder / case) for trial in known.trials(record)]
+        simulator = Simulator(trials, suitable_step(trials, factors_of(known)), EVERY)
+        null = fit_nominal(simulator, factors_of(known))
+        wanted = meant.labels((truth["effect"], truth["at"]))
+        groups = {group: own for group, own in known.groups.items() if ("parameter", group) in wanted}
+        tried = [item for item in candidates(trials[0].scene) if item.label in wanted]
+        screen = Screen(simulator, null, jacobian(simulator, null.hypothesis, null.z, null.residuals))
+        looks = [(suspect, screen.look(suspect.all)) for suspect in simplest(suspects(null.hypothesis, groups, tried))]
+        found = [(suspect, look) for suspect, look in looks if look is not None]
+        if found:
+            suspect, look = min(found, key=lambda pair: pair[1].cost)
+            yield Problem(bench, case, suspect.law, suspect.label[1], simulator, look), truth["effect"]
+
+
+def curved(simulator: Simulator, hypothesis: Hypothesis, start: FloatArray) -> float:
+    """The fit of the diagnosis; returns the mean square that is left."""
+    return fit(simulator, hypothesis, start, steps=CONVERGED, share=FINE).chi_fit
+
+
+def straight(simulator: Simulator, hypothesis: Hypothesis, start: FloatArray) -> float:
+    """The same fit without curved steps."""
+    with patch.object(Valley, "followed", lambda *_: []):
+        return fit(simulator, hypothesis, start, steps=CONVERGED, share=FINE).chi_fit
+
+
+def scipys(simulator: Simulator, hypothesis: Hypothesis, start: FloatArray) -> float:
+    """Trust region reflective of scipy with the same Jacobian, priors and limits, and the same change of the cost as its end."""
+    mask, root = simulator.fit, np.sqrt(hypothesis.precisions)
+    kept: dict[bytes, FloatArray] = {}
+
+    def residuals(z: FloatArray) -> FloatArray:
+        inside = hypothesis.clipped(z)
+        [run] = simulator.residuals(hypothesis, [inside])
+        kept.clear()
+        if run is None:
+            return np.full(int(np.count_nonzero(mask)) + len(z), np.inf)
+        kept[inside.tobytes()] = run
+        return np.concatenate([run[mask], root * z])
+
+    def slopes(z: FloatArray) -> FloatArray:
+        inside = hypothesis.clipped(z)
+        run = kept.get(inside.tobytes())
+        if run is None:
+            [run] = simulator.residuals(hypothesis, [inside])
+            if run is None:
+                raise ValueError("an accepted point cannot be run")
+        return np.vstack([jacobian(simulator, hypothesis, inside, run), np.diag(root)])
+
+    found = least_squares(residuals, start, jac=slopes, x_scale="jac", ftol=FINE, max_nfev=4 * CONVERGED)
+    [run] = simulator.residuals(hypothesis, [hypothesis.clipped(found.x)])
+    return float("nan") if run is None else chi_square(run, mask)
+
+
+WAYS: dict[str, Callable[[Simulator, Hypothesis, FloatArray], float]] = {"curved": curved, "straight": straight, "scipy": scipys}
+"""Name of a way -> function of simulator, hypothesis and start."""
