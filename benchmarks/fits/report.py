@@ -7,38 +7,40 @@ from typing import Any
 
 import numpy as np
 
-WAYS = ("curved", "straight", "scipy")
+WORDS = (
+    "Misfit: what the diagnosis minimises, for a sample; 1 is noise alone, and stretches that fit badly count by their logarithm.",
+    "Mean square: of the same samples, which scipy minimises. Runs of the bench's model, those of differences included. Time of the",
+    "processor against that of curved steps.",
+)
 
 
 def report(numbers: Mapping[str, Any]) -> str:
     """What each way leaves and what it costs, against the fit of the diagnosis."""
     rows = numbers["rows"]
+    ways = list(dict.fromkeys(row["way"] for row in rows))
+    peers = ways[1:]
     cases = list(dict.fromkeys((row["bench"], row["case"]) for row in rows))
+    heads = [f"{what} {way}" for what in ("misfit", "mean square", "runs") for way in ways] + [f"time {way}" for way in peers]
     lines = [
         "# Joint fits",
         "",
-        f"{numbers['about']['processor']}. Mean square of the fitted samples (1: noise alone) at the start and the end; runs of the",
-        "bench's model, those of differences included; processor time against that of curved steps.",
+        f"{numbers['about']['processor']}. {WORDS[0]}",
+        *WORDS[1:],
         "",
-        "| bench | cause | law at place | start | curved | straight | scipy | runs: curved | straight | scipy | time: straight | scipy |",
-        "|---|---|---|---|---|---|---|---|---|---|---|---|",
+        "| bench | cause | law at place | mean square at the start | " + " | ".join(heads) + " |",
+        "|" + "---|" * (4 + len(heads)),
     ]
-    ratios: dict[str, list[float]] = {"straight": [], "scipy": []}
+    ratios: dict[str, list[float]] = {way: [] for way in peers}
     for bench, case in cases:
         own = {row["way"]: row for row in rows if (row["bench"], row["case"]) == (bench, case)}
-        first = own["curved"]
-        times = {way: own[way]["seconds"] / first["seconds"] for way in ratios}
+        first = own[ways[0]]
+        times = {way: own[way]["seconds"] / first["seconds"] for way in peers}
         for way, ratio in times.items():
             ratios[way].append(ratio)
-        lines.append(
-            f"| {bench} | {first['cause']} | {first['law']} at {first['place']} | {first['begun']:.4g} | "
-            + " | ".join(f"{own[way]['left']:.4f}" for way in WAYS)
-            + " | "
-            + " | ".join(str(own[way]["runs"]) for way in WAYS)
-            + " | "
-            + " | ".join(f"{times[way]:.2f}" for way in ratios)
-            + " |"
-        )
-    middle = {way: float(np.exp(np.mean(np.log(values)))) for way, values in ratios.items()}
-    lines += ["", f"Time in the geometric mean: straight {middle['straight']:.2f}, scipy {middle['scipy']:.2f} times that of curved steps."]
+        cells = [bench, first["cause"], f"{first['law']} at {first['place']}", f"{first['begun']:.4g}"]
+        cells += [f"{own[way]['misfit']:.4f}" for way in ways] + [f"{own[way]['left']:.4f}" for way in ways]
+        cells += [str(own[way]["runs"]) for way in ways] + [f"{times[way]:.2f}" for way in peers]
+        lines.append("| " + " | ".join(cells) + " |")
+    middle = ", ".join(f"{way} {float(np.exp(np.mean(np.log(ratios[way])))):.2f}" for way in peers)
+    lines += ["", f"Time in the geometric mean, against {ways[0]} steps: {middle}."]
     return "\n".join([*lines, ""])

@@ -59,7 +59,7 @@ def picked(looks: Sequence[tuple[Suspect, Look]], *, laws: int) -> list[tuple[Su
     """The best laws of each label, so many of each: first the best of every label, then the second ones, and so on.
 
     In a faint gap many laws look nearly alike, and three of a crack and two of a probe's scale are no reason to leave a bearing out (our
-    own eighth rotor set, c09, labels open: it came eleventh, and leaves half of what the first ten do once it is fitted).
+    own eighth rotor set, c09, labels open: it came eleventh, and once fitted gains twice what the best of the first ten does).
     """
     turns: list[list[tuple[Suspect, Look]]] = [[] for _ in range(laws)]
     seen: dict[Label, int] = {}

@@ -26,7 +26,7 @@ import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.bounded import bounded_step
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
-from hdrive_mbs.diagnosis.normal_equations import normal_equations
+from hdrive_mbs.diagnosis.normal_equations import normal_equations, promised
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -38,7 +38,7 @@ ROUNDS = 4
 """Times that a curve is bent anew at most, as long as each gains."""
 GAINS = 1.2
 """Times the gain before, which a round has to give for another one."""
-SHORTER, TRIES = 0.8, 20
+SHRINK, TRIES = 0.8, 20
 """A curve that leads farther than a step may is shortened by this factor, so often at most (to a hundredth)."""
 
 
@@ -88,8 +88,7 @@ class Valley:
     @property
     def promised(self) -> float:
         """What the quadratic model says that this part of the step gains."""
-        move = self.longest * self.step
-        return -float(self.slope @ move) - 0.5 * float(move @ self.normal @ move)
+        return promised(self.longest * self.step, self.normal, self.slope)
 
     def followed(self, straight: Sequence[End], known: float, run: Run) -> list[End]:
         """Ends of curved steps: of the straight part that came out best and the next longer one, then of the best so far.
@@ -135,5 +134,5 @@ class Valley:
                 if np.all(np.abs(point - self.z) <= reaches):
                     curve[part] = point
                     break
-                part *= SHORTER
+                part *= SHRINK
         return sorted(curve.items())

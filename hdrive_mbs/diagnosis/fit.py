@@ -20,7 +20,7 @@ from hdrive_mbs.diagnosis.bounded import bounded_step
 from hdrive_mbs.diagnosis.curved import SHORT, End, Run, Valley
 from hdrive_mbs.diagnosis.differences import believed, jacobian, unseen_in
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
-from hdrive_mbs.diagnosis.normal_equations import normal_equations
+from hdrive_mbs.diagnosis.normal_equations import normal_equations, promised
 from hdrive_mbs.diagnosis.simulator import Simulator, chi_square
 from hdrive_mbs.errors import AnalysisError
 
@@ -114,13 +114,14 @@ def fit(
             systems[power] = squares, slope + precisions * z
         curvature = systems[1.0][0] if fresh else curvature
         points = _proposals(hypothesis, z, precisions, systems, damping)
-        promised = _promised(points[0][0] - z, *systems[1.0], precisions)
-        found, costs, kept_promise = _tried(simulator, hypothesis, points, cost, promised)
+        squares, slope = systems[1.0]
+        normal = squares + np.diag(precisions)
+        found, costs, kept_promise = _tried(simulator, hypothesis, points, cost, promised(points[0][0] - z, normal, slope))
         if fresh and not followed and len(found) == len(points):
             followed = True
-            run = partial(_run, simulator, hypothesis)
-            valley = _valley(simulator, hypothesis, (z, residuals, cost), (columns, weights, *systems[1.0]))
-            for end in _curved(valley, points, found, costs, enough + share * cost, run):
+            step = bounded_step(hypothesis, z, normal, slope)
+            valley = Valley(hypothesis, z, step, cost, columns, weights, normal, slope, residuals[mask], mask)
+            for end in _curved(valley, points, found, costs, enough + share * cost, partial(_run, simulator, hypothesis)):
                 points.append((end.point, 0.0))
                 found.append(end.residuals)
                 costs.append(end.cost)
@@ -212,22 +213,6 @@ def _tried(
     return found, costs, kept
 
 
-def _valley(
-    simulator: Simulator,
-    hypothesis: Hypothesis,
-    point: tuple[FloatArray, FloatArray, float],
-    system: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
-) -> Valley:
-    """What curved steps start from.
-
-    point : coordinates, residuals of all samples, cost;  system : J, the diagonal of W, J^T W J, J^T W r + P z
-    """
-    (z, residuals, cost), (columns, weights, squares, slope) = point, system
-    normal = squares + np.diag(hypothesis.precisions)
-    step = bounded_step(hypothesis, z, normal, slope)
-    return Valley(hypothesis, z, step, cost, columns, weights, normal, slope, residuals[simulator.fit], simulator.fit)
-
-
 def _curved(
     valley: Valley,
     points: Sequence[tuple[FloatArray, float]],
@@ -245,11 +230,6 @@ def _curved(
         return []
     parts = SHORTER[0][1]
     return valley.followed([End(part, points[k][0], found[k], costs[k]) for k, part in enumerate(parts)], known, run)
-
-
-def _promised(move: FloatArray, curvature: FloatArray, slope: FloatArray, precisions: FloatArray) -> float:
-    """What the quadratic model says that a step lowers the cost by."""
-    return -float(slope @ move) - 0.5 * float(move @ (curvature + np.diag(precisions)) @ move)
 
 
 Systems = Mapping[float, tuple[FloatArray, FloatArray]]

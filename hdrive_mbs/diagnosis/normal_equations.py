@@ -1,4 +1,4 @@
-"""J^T W J and J^T W r in stretches of samples, so that no second Jacobian is held beside the first."""
+"""J^T W J and J^T W r in stretches of samples, so that no second Jacobian is held beside the first; what they promise of a step."""
 
 from __future__ import annotations
 
@@ -24,3 +24,11 @@ def normal_equations(columns: FloatArray, weights: FloatArray, residuals: FloatA
         curvature += weighted.T @ columns[some]
         slope += weighted.T @ residuals[some]
     return curvature, slope
+
+
+def promised(move: FloatArray, normal: FloatArray, slope: FloatArray) -> float:
+    """What the quadratic model says that a step lowers the cost by.
+
+    move : d, shape (size,);  normal : J^T W J + P, shape (size, size);  slope : J^T W r + P z, shape (size,)
+    """
+    return -float(slope @ move) - 0.5 * float(move @ normal @ move)

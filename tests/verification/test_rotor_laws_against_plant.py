@@ -79,6 +79,7 @@ CASES: dict[str, tuple[str, int, tuple[float, ...], Effect, str]] = {
         hm.SteepCrack(**CRACK, angle=0.3 - math.pi, steepness=4.0),
         "section_1",
     ),
+    "keyway": ("crack", 0, (0, 0, 0.8, 3e-7, 1e-7, 0.3, 1.0), hm.Keyway(**CRACK, angle=0.3), "section_1"),
     "crack by moment": (
         "crack",
         0,
