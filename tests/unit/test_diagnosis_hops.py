@@ -8,7 +8,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from hdrive_mbs.diagnosis import fit as fitting
 from hdrive_mbs.diagnosis import hops
+from hdrive_mbs.diagnosis.curved import Valley
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hops import WORTH, settled
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
@@ -55,6 +57,25 @@ def test_a_hop_leads_out_of_a_hollow_and_down_the_bowl() -> None:
     assert 0.0 < abs(stuck.z[0] - 1.0) < 2.0 * np.pi / 200.0
     assert abs(out.z[0] - CENTRE) < 0.5 * abs(stuck.z[0] - CENTRE)
     assert out.cost < stuck.cost - WORTH
+
+
+def test_in_a_hollow_a_curve_is_followed_once_for_each_set_of_differences_and_for_a_gain_that_counts(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """However often the damping is raised there, which changes neither the step nor how it bends."""
+    valleys: list[Valley] = []
+    steps: list[int] = []
+    monkeypatch.setattr(Valley, "followed", lambda self, *_: valleys.append(self) or [])
+    proposals = fitting._proposals
+    monkeypatch.setattr(fitting, "_proposals", lambda *given: steps.append(1) or proposals(*given))
+    waved = Waved(0.15, 300.0)
+    hypothesis = begun(Waved(0.0, 1.0), CENTRE).hypothesis
+    steps.clear()
+    valleys.clear()
+    fit(waved, hypothesis, np.array([1.0]))  # type: ignore[arg-type]
+    assert valleys
+    assert len({id(valley.columns) for valley in valleys}) == len(valleys) < len(steps)
+    assert all(valley.promised > 0.2 + 1e-4 * valley.cost for valley in valleys)  # what ends a fit
 
 
 def test_a_fit_at_the_bottom_is_left_there_and_no_fit_starts_from_it(monkeypatch: pytest.MonkeyPatch) -> None:
