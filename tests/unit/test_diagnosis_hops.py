@@ -44,9 +44,9 @@ class Waved:
         return [self.noise + SLOPE * (z[0] - CENTRE) + self.wave * np.sin(self.number * z[0]) for z in points]
 
 
-def begun(waved: Waved, at: float) -> Fitted:
+def begun(waved: Waved, at: float, share: float = 1e-7) -> Fitted:
     hypothesis = Hypothesis((Factor(path="shaft.stiffness", name="stiffness", nominal={"shaft.stiffness": 1.0}, sigma=0.01),))
-    return fit(waved, hypothesis, np.array([at]), share=1e-7)  # type: ignore[arg-type]
+    return fit(waved, hypothesis, np.array([at]), share=share)  # type: ignore[arg-type]
 
 
 def test_a_hop_leads_out_of_a_hollow_and_down_the_bowl() -> None:
@@ -59,7 +59,7 @@ def test_a_hop_leads_out_of_a_hollow_and_down_the_bowl() -> None:
     assert out.cost < stuck.cost - WORTH
 
 
-def test_in_a_hollow_a_curve_is_followed_once_for_each_set_of_differences_and_for_a_gain_that_counts(
+def test_in_a_hollow_a_curve_is_followed_once_for_each_set_of_differences(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """However often the damping is raised there, which changes neither the step nor how it bends."""
@@ -75,7 +75,12 @@ def test_in_a_hollow_a_curve_is_followed_once_for_each_set_of_differences_and_fo
     fit(waved, hypothesis, np.array([1.0]))  # type: ignore[arg-type]
     assert valleys
     assert len({id(valley.columns) for valley in valleys}) == len(valleys) < len(steps)
-    assert all(valley.promised > 0.2 + 1e-4 * valley.cost for valley in valleys)  # what ends a fit
+
+
+def test_no_curve_is_followed_for_a_gain_that_ends_a_fit_anyway(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At the bottom of a small hollow beside that of the bowl: 0.07 is left to gain, and 0.2 is what ends a fit."""
+    monkeypatch.setattr(Valley, "followed", lambda *_: pytest.fail("0.07 was promised"))
+    assert begun(Waved(0.03, 400.0), CENTRE, 1e-4).converged
 
 
 def test_a_fit_at_the_bottom_is_left_there_and_no_fit_starts_from_it(monkeypatch: pytest.MonkeyPatch) -> None:
