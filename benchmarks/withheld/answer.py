@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from benchmarks.withheld.finding import Claimed, Finding
@@ -11,16 +12,23 @@ from hdrive_mbs.diagnosis.result import NOWHERE
 
 WORDS = ("none", "unknown")
 """Entries of a ranking that are no causes."""
+TINY = 1e-300
+NAMED = 7.0
+"""Odds of a label with a name over one without, before any record is seen: of the causes in our own sets five of six have a name, which
+46 of the 108 labels of the rotor bench share (29 of 75 of the drive bench: 8)."""
 
 
 def answer_of(case: str, finding: Finding, names: Names) -> dict[str, Any]:
     """The answer.
 
     A claim without a name is answered "unknown", with its place first in ``where``.  If a cause with a name is tied with it, that
-    one is claimed: the table of names says beforehand that it is more likely to be there.  Of two claimed causes the one
+    one is claimed: the table of names says beforehand that it is more likely to be there, and the probabilities of what is tied
+    are weighed by that (NAMED).  Of two claimed causes the one
     that explains more by itself decides: if it has a name, what has none beside it is left out; if not, the answer is "unknown".
     """
     claimed = names.joined(_named(finding, names))
+    if len(finding.claimed) == 1 and finding.tied:
+        finding = replace(finding, ranking=_weighed(finding, names))
     verdict = finding.verdict
     if verdict not in WORDS:
         verdict = _verdict([name for name, _ in claimed])
@@ -89,6 +97,14 @@ def _instead(finding: Finding, names: Names) -> list[tuple[Name, Claimed]]:
     name = names.name(best)
     assert name is not None
     return [(name, Claimed(label=best))]
+
+
+def _weighed(finding: Finding, names: Names) -> dict[Label, float]:
+    """Probabilities in which what is tied shares what it has by the odds that the table of names gives beforehand."""
+    together = {*finding.tied, *(item.label for item in finding.claimed)} & set(finding.ranking)
+    weights = {label: finding.ranking[label] * (NAMED if names.name(label) is not None else 1.0) for label in together}
+    share = sum(finding.ranking[label] for label in together) / max(sum(weights.values()), TINY)
+    return {label: weights[label] * share if label in together else chance for label, chance in finding.ranking.items()}
 
 
 def _verdict(claimed: list[Name]) -> str:

@@ -130,6 +130,27 @@ def test_a_name_that_is_tied_with_a_cause_without_one_is_claimed() -> None:
     answer = answer_of("drive-c01", given, DRIVE)
     assert claimed(answer) == [("friction_load", "load")]
     assert answer["indistinguishable"] == [["friction_load", "load"]]
+    # 0.9 in all, shared as 0.5 : 7 x 0.4
+    assert answer["effects"][0]["probability"] == pytest.approx(0.9 * 2.8 / 3.3)
+    assert {item["effect"]: item["probability"] for item in answer["ranking"]} == {
+        "friction_load": pytest.approx(0.9 * 2.8 / 3.3),
+        "unknown": pytest.approx(0.9 * 0.5 / 3.3),
+        "none": 0.1,
+    }
+    assert answer["where"][0] == {"at": "load", "probability": pytest.approx(0.9 * 2.8 / 3.3)}
+
+
+def test_a_claim_with_a_name_is_likelier_than_a_tie_without_one_and_alike_with_a_name() -> None:
+    for other, share in ((("friction", "gear.flexspline"), 0.9 * 3.5 / 3.9), (("kinematic_error", "gear"), 0.5)):
+        tied = (("friction", "load"), other)
+        given = finding("effect", tied[0], tied=tied, ranking={tied[0]: 0.5, tied[1]: 0.4, ("none", ""): 0.1})
+        assert answer_of("drive-c01", given, DRIVE)["effects"][0]["probability"] == pytest.approx(share)
+
+
+def test_of_two_claimed_causes_both_keep_their_probability() -> None:
+    labels = ("friction", "motor"), ("friction", "load")
+    given = finding("effect", *labels, tied=(("friction", "gear.flexspline"),), ranking={**dict.fromkeys(labels, 0.8), ("none", ""): 0.2})
+    assert [item["probability"] for item in answer_of("drive-c01", given, DRIVE)["effects"]] == [0.8, 0.8]
 
 
 @pytest.mark.parametrize(("shares_of", "said"), [((0.6, 0.2), "effect"), ((0.2, 0.6), "unknown")])
