@@ -74,5 +74,5 @@ def _apart(effect: Effect, name: str, value: float, unit: str) -> float:
     """How far a field is from a value: of an angle the shorter way round, of a size by its logarithm."""
     own = float(getattr(effect, name))
     if unit == "rad":
-        return abs(math.remainder(own - value, math.tau))
+        return abs(math.remainder(own - value, math.pi if name in type(effect).half_turn else math.tau))
     return abs(math.log(own / value)) if own > 0.0 and value > 0.0 else abs(own - value)

@@ -73,6 +73,8 @@ class Effect(Described, ABC):
     """Whether it stands for its family in a first look, in place of the law with the fewest numbers to search."""
     decisive: ClassVar[tuple[str, ...]] = ()
     """Those of them of which already a first look takes every value: away from the right one the effect does not show."""
+    half_turn: ClassVar[frozenset[str]] = frozenset()
+    """Angles [rad] that say the same once more after half a turn."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)

@@ -40,6 +40,7 @@ class Keyway(CrackEffect):
     family: ClassVar[str] = "shaft_asymmetry"
     signature: ClassVar[str] = "2x that peaks at half the critical speed, no 1x of its own; slightly lower resonances"
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {**CrackEffect.starts, "angle": (-0.78, 0.0, 0.78, 1.57)}
+    half_turn: ClassVar[frozenset[str]] = frozenset({"angle"})
 
     def opening(self, moment: Value, cosine: Value, sine: Value, gravity: tuple[float, float]) -> tuple[Value, Value]:
         return 1.0, 0.0

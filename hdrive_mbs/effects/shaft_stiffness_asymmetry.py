@@ -39,6 +39,7 @@ class ShaftStiffnessAsymmetry(WholeShaftEffect):
     family: ClassVar[str] = "shaft_asymmetry"
     signature: ClassVar[str] = "2x that peaks at half the critical speed, no 1x of its own; steady whatever the balancing"
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"asymmetry": (0.01,), "angle": (-0.78, 0.0, 0.78, 1.57)}
+    half_turn: ClassVar[frozenset[str]] = frozenset({"angle"})
     decisive: ClassVar[tuple[str, ...]] = ("angle",)
 
     def pair(

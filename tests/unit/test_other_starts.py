@@ -62,6 +62,18 @@ def test_an_angle_begins_at_all_others_but_the_nearest_the_shorter_way_round(ang
     assert {dataclasses.replace(item, angle=angle) for item in turned if isinstance(item, hm.MomentCrack)} == {crack}
 
 
+@pytest.mark.parametrize(
+    "turning",
+    [hm.Keyway(compliance=1.4e-7, position=0.12), hm.ShaftStiffnessAsymmetry(asymmetry=0.02)],
+    ids=lambda item: type(item).__name__,
+)
+@pytest.mark.parametrize(("angle", "nearest"), [(1.5, 1.57), (-1.5, 1.57), (2.3, -0.78), (-2.4, 0.78), (3.1, 0.0)])
+def test_what_says_the_same_after_half_a_turn_is_not_begun_there(turning: Effect, angle: float, nearest: float) -> None:
+    own = turning.replacing(angle=angle)
+    begun_at = [float(item.angle) for item in others(own, [own])]
+    assert sorted(begun_at) == sorted({-0.78, 0.0, 0.78, 1.57} - {nearest})
+
+
 def test_two_decisive_fields_begin_at_all_combinations_but_one() -> None:
     crack = hm.PhasedCrack(compliance=1e-7, position=0.5, angle=1.4, phase=-1.4)
     turned = {(item.angle, item.phase) for item in others(crack, [crack]) if isinstance(item, hm.PhasedCrack)}
