@@ -21,9 +21,13 @@ from hdrive_mbs.effects.coulomb_stribeck_friction import CoulombStribeckFriction
 from hdrive_mbs.effects.dahl_hysteresis import DahlHysteresis
 from hdrive_mbs.effects.eccentric_load import EccentricLoad
 from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.effects.external_torque import ExternalTorque
 from hdrive_mbs.effects.kinematic_error import KinematicError
+from hdrive_mbs.effects.load_lag import LoadLag
+from hdrive_mbs.effects.rub_at_angle import RubAtAngle
 from hdrive_mbs.effects.sensor_gain import SensorGain
 from hdrive_mbs.effects.torque_ripple import TorqueRipple
+from hdrive_mbs.effects.unequal_drag import UnequalDrag
 from tests.unit.diagnosis_cases import CHANNELS, DISTURBED, DURATION, INPUTS, KNOWLEDGE, STEP, bench, quiet, records, scene
 
 TRIED: tuple[type[Effect], ...] = (CoulombStribeckFriction, KinematicError, DahlHysteresis, SensorGain, EccentricLoad)
@@ -43,11 +47,12 @@ def estimates(cause: Cause) -> dict[str, Estimate]:
     return {item.name.rpartition(".")[2]: item for item in cause.parameters}
 
 
-def check_gap(found: Diagnosis) -> None:
-    """Nothing but noise is left by the claim, and refitted parameters alone go only part of the way."""
+def check_gap(found: Diagnosis, refit_helps: bool = True) -> None:
+    """Nothing but noise is left by the claim, and refitted parameters alone go only part of the way, if any."""
     assert abs(found.gap.effect.value - 1.0) < NEAR_ONE
-    assert found.gap.effect.value < found.gap.refit.value < found.gap.nominal.value
-    assert 0.0 < found.closed_by_refit < found.closed
+    assert found.gap.effect.value < min(found.gap.refit.value, found.gap.nominal.value)
+    assert (found.gap.refit.value < found.gap.nominal.value) == (found.closed_by_refit > 0.0) == refit_helps
+    assert found.closed_by_refit < found.closed
     assert found.gap.effect.low < found.gap.effect.value < found.gap.effect.high
 
 
@@ -71,10 +76,21 @@ PLANTED: dict[str, tuple[Effect, str, str, tuple[str, ...]]] = {
 """Effect, place, verdict, and fields that the records determine."""
 
 
-@pytest.mark.parametrize("name", PLANTED)
+WITHOUT_A_NAME: dict[str, tuple[Effect, str, str, tuple[str, ...]]] = {
+    "drag in one sense": (UnequalDrag(friction=0.02), "motor", "effect", ("friction",)),
+    "rub at an angle": (RubAtAngle(friction=0.03, angle=0.7, sharpness=5.0), "motor", "effect", ("friction", "angle", "sharpness")),
+    "brake that lags": (LoadLag(time_constant=0.02), "load", "effect", ("time_constant",)),
+    "neighbour that shakes": (ExternalTorque(amplitude=1.0, frequency=47.0, phase=0.4), "load", "effect", ("amplitude", "frequency")),
+}
+"""Causes that most libraries have no word for; each has to be told from the others, too."""
+WITHOUT_A_NAME_TRIED: tuple[type[Effect], ...] = (UnequalDrag, RubAtAngle, LoadLag, ExternalTorque, CoulombStribeckFriction)
+
+
+@pytest.mark.parametrize("name", [*PLANTED, *WITHOUT_A_NAME])
 def test_a_planted_cause_is_found_at_its_place_with_its_size(name: str) -> None:
-    effect, place, verdict, fields = PLANTED[name]
-    found = diagnose(bench(), records((effect, place)), candidates=TRIED, pictures=False)
+    effect, place, verdict, fields = {**PLANTED, **WITHOUT_A_NAME}[name]
+    tried = TRIED if name in PLANTED else WITHOUT_A_NAME_TRIED
+    found = diagnose(bench(), records((effect, place)), candidates=tried, pictures=False)
     assert found.verdict == verdict
     [cause] = found.causes
     assert (cause.effect, cause.at, cause.law) == (type(effect).family, place, type(effect).__name__)
@@ -84,7 +100,8 @@ def test_a_planted_cause_is_found_at_its_place_with_its_size(name: str) -> None:
     for field in fields:
         assert holds(estimates(cause)[field], getattr(effect, field)), field
         assert estimates(cause)[field].identifiable
-    check_gap(found)
+    # a load that lags cannot be made up for by parameters: what they gain where they are fitted they lose elsewhere
+    check_gap(found, refit_helps=name != "brake that lags")
     [added] = found.improved.effects
     assert (type(added.effect), added.at) == (type(effect), place)
 
