@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.machine import machine as about
-from hdrive_mbs.compiled.lanes import run_lanes
+from hdrive_mbs.compiled.lanes import Lanes, run_lanes
 from hdrive_mbs.compiled.line import CompiledLine
 from hdrive_mbs.compiled.machine import machine, processor
 from models import drive_bench, rotor_bench
@@ -31,7 +31,7 @@ def study(*, quick: bool, repeats: int) -> dict[str, Any]:
             taken = []
             for _ in range(repeats):
                 begun = time.process_time()
-                out, good = run_lanes([line.program], width, initial, samples, every, inner, 0.0)
+                out, good = run_lanes(Lanes([line.program], width), initial, samples, every, inner, 0.0)
                 taken.append(time.process_time() - begun)
             if good[0] != samples:
                 raise RuntimeError(f"{name}: not finite after {good[0]} of {samples} samples")

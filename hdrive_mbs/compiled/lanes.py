@@ -32,6 +32,7 @@ class Lanes:
         self._constants = side_by_side([program.constants for program in filled])
         self._tables = _tables(filled)
         self._grid: Grid | None = None
+        self._kept: list[list[FloatArray]] = []
         self._run = machine(self.structure, width, shared=self.shared or width == 1).run
 
     def state(self, initial: FloatArray) -> FloatArray:
@@ -58,6 +59,10 @@ class Lanes:
             self._at = np.array([[column.ctypes.data for column in row] for row in columns], np.int64)
         return self._at
 
+    def forget(self) -> None:
+        """Let go of the inputs at the times of the last grid."""
+        self._grid, self._kept = None, []
+
     def counted(self) -> npt.NDArray[np.int64]:
         """Memory for the number of finite samples of each lane, none yet."""
         good = _aligned(self.width, np.int64)
@@ -66,22 +71,21 @@ class Lanes:
 
 
 def run_lanes(
-    programs: Sequence[Program], width: int, initial: FloatArray, samples: int, every: float, inner: int, start: float
+    lanes: Lanes, initial: FloatArray, samples: int, every: float, inner: int, start: float
 ) -> tuple[FloatArray, npt.NDArray[np.int64]]:
     """Readings, shape (readings, width, samples), and for each lane the number of samples up to which it is finite.
 
-    programs : of one structure, at most ``width``; the last one fills lanes that are left
     initial : states at the start, shape (programs, states)
     """
-    lanes = Lanes(programs, width)
     state, good = lanes.state(initial), lanes.counted()
-    out = np.empty((len(lanes.structure.readings), width, samples))
+    out = np.empty((len(lanes.structure.readings), lanes.width, samples))
     block = max(1, BLOCK // (2 * inner))
     for first in range(0, samples, block):
         rows = min(block, samples - first)
         lanes.run(state, Grid(start, every, inner, first, rows), out, good, last=first + rows == samples)
         if np.max(good) < first + rows:
             break
+    lanes.forget()
     return out, good
 
 

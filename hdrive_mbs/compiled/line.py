@@ -11,11 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.compiled.equations import accelerations
-from hdrive_mbs.compiled.lanes import run_lanes
+from hdrive_mbs.compiled.lanes import Lanes, run_lanes
 from hdrive_mbs.compiled.machine import processor
 from hdrive_mbs.compiled.program import program
 from hdrive_mbs.compiled.readings import readings
 from hdrive_mbs.compiled.structure import Structure
+from hdrive_mbs.compiled.threads import side_by_side
 from hdrive_mbs.errors import ParameterError, SimulationError
 from hdrive_mbs.expression import Expression, Value, record, trace, variable
 from hdrive_mbs.network.moment import Moment
@@ -123,18 +124,20 @@ def run_many(
         groups.setdefault(line.structure, []).append(k)
     times = np.asarray(start + every * np.arange(samples), float)
     found: dict[int, CompiledRun | SimulationError] = {}
-    for group in groups.values():
-        lanes = processor().lanes
-        for part in (group[first : first + lanes] for first in range(0, len(group), lanes)):
-            # one line alone takes as long in all lanes as in one, and needs no machine code of its own
-            out, good = run_lanes(
-                [lines[k].program for k in part], lanes, np.array([initial[k] for k in part]), samples, every, inner, start
-            )
-            for lane, k in enumerate(part):
-                if good[lane] < samples:
-                    found[k] = _not_finite(start + int(good[lane]) * every, every / inner)
-                else:
-                    found[k] = CompiledRun(times, {name: out[i, lane] for i, name in enumerate(lines[k].channels)})
+    width = processor().lanes
+    parts = [group[first : first + width] for group in groups.values() for first in range(0, len(group), width)]
+    # one line alone takes as long in all lanes as in one, and needs no machine code of its own
+    prepared = [Lanes([lines[k].program for k in part], width) for part in parts]
+
+    def run(number: int) -> tuple[FloatArray, npt.NDArray[np.int64]]:
+        return run_lanes(prepared[number], np.array([initial[k] for k in parts[number]]), samples, every, inner, start)
+
+    for part, (out, good) in zip(parts, side_by_side(run, range(len(parts))), strict=True):
+        for lane, k in enumerate(part):
+            if good[lane] < samples:
+                found[k] = _not_finite(start + int(good[lane]) * every, every / inner)
+            else:
+                found[k] = CompiledRun(times, {name: out[i, lane] for i, name in enumerate(lines[k].channels)})
     return [found[k] for k in range(len(lines))]
 
 

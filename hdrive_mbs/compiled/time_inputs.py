@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import threading
 from collections import OrderedDict
 from collections.abc import Hashable
 from dataclasses import dataclass, field
@@ -19,6 +20,7 @@ KEPT_BYTES = 96_000_000
 """Memory for columns that are kept for later runs."""
 
 _kept: OrderedDict[Hashable, FloatArray] = OrderedDict()
+_keeping = threading.RLock()
 _digests: WeakKeyDictionary[Pieces, bytes] = WeakKeyDictionary()
 _alive: WeakValueDictionary[Hashable, TimeInput] = WeakValueDictionary()
 
@@ -52,7 +54,8 @@ class TimeInput:
 
     def column(self, grid: Grid) -> FloatArray:
         """Its values at the times of a grid; not to be changed."""
-        return _column((self.content, grid), self.expression, grid)
+        with _keeping:
+            return _column((self.content, grid), self.expression, grid)
 
 
 def time_input(expression: Expression) -> TimeInput:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -25,6 +24,7 @@ from hdrive_mbs.diagnosis.tasks import Found, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import TIED, left
+from hdrive_mbs.diagnosis.worker import Later
 from hdrive_mbs.errors import AnalysisError
 
 LEFT = 1.1
@@ -103,37 +103,22 @@ def _with(search_: Search, more: Sequence[Found]) -> Search:
     return replace(search_, found=tuple(found))
 
 
-def _begun(team: Team, coarse: Simulator, fine: Simulator, factors: Sequence[Factor], said: Report) -> tuple[Fitted, Located | None]:
-    """The nominal model refitted and, side by side with it, where the gap of a rotor line lies, which is looked for from the data sheet.
+def _placed(fine: Simulator, factors: Sequence[Factor]) -> Located:
+    """Where the gap of a rotor line lies, which is looked for from the data sheet.
 
     Raises AnalysisError where the nominal model cannot be simulated.
     """
-    if not bends(fine):
-        said("fitting the nominal model", 0, 1)
-        [null] = team.map(fit_nominal, coarse, [tuple(factors)])
-        return null, None
-    done = partial(said, "fitting the nominal model, looking where the gap lies")
-    work: list[Beginning] = [partial(_refitted, factors=tuple(factors)), partial(_placed, factors=tuple(factors))]
-    null, place = team.map(_begin, (coarse, fine), work, done)
-    return null, place
-
-
-Beginning = Callable[[Simulator, Simulator], Any]
-
-
-def _begin(shared: tuple[Simulator, Simulator], work: Beginning) -> Any:
-    return work(*shared)
-
-
-def _refitted(coarse: Simulator, fine: Simulator, factors: Sequence[Factor]) -> Fitted:
-    return fit_nominal(coarse, factors)
-
-
-def _placed(coarse: Simulator, fine: Simulator, factors: Sequence[Factor]) -> Located:
     nominal = as_given(fine, Hypothesis(factors=tuple(factors)))
     if nominal is None:
         raise AnalysisError(CANNOT_RUN)
     return located(fine, nominal)
+
+
+def _looked_up(team: Team, place: Later, said: Report) -> Located:
+    said("looking where the gap lies", 0, 1)
+    found: Located = team.answer(place)
+    said("looking where the gap lies", 1, 1)
+    return found
 
 
 def _unseen(simulator: Simulator, fitted: Fitted) -> dict[str, set[str]]:
@@ -217,10 +202,12 @@ def gather(
     Raises AnalysisError where the nominal model cannot be simulated.
     """
     said = report or (lambda stage, done, total: None)
-    null, place = _begun(team, coarse, fine, factors, said)
+    elsewhere = team.begin(_placed, fine, tuple(factors)) if bends(fine) else None
+    [null] = team.map(fit_nominal, coarse, [tuple(factors)], partial(said, "fitting the nominal model"))
     unseen = _unseen(coarse, null)
     coarse, fine = coarse.knowing(unseen), fine.knowing(unseen)
     single = search(team, coarse, null, groups, tried, report=said)
+    place = None if elsewhere is None else _looked_up(team, elsewhere, said)
     there = _there(team, coarse, null, single, place, tried, said)
     single = _with(single, there)
     pair, double, others = _second(team, coarse, null, groups, tried, single, there, said)

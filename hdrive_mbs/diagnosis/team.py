@@ -2,6 +2,9 @@
 
 Processes are kept between the stages of a diagnosis, so that the machine code that each has made stays.  With a journal,
 what was done in an earlier, interrupted run is taken from there.
+
+Work that is needed later may begin at once, beside the stages until then (``Team.begin``).  Where fewer are at work than there are
+processes, at the end of a stage or in one with a single item, these run their lines in as many threads as there are cores to spare.
 """
 
 from __future__ import annotations
@@ -13,9 +16,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TypeVar
 
+from hdrive_mbs.compiled.threads import allowed
 from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.packing import packed
-from hdrive_mbs.diagnosis.worker import Worker
+from hdrive_mbs.diagnosis.worker import Later, Worker, threads_of_each
 from hdrive_mbs.errors import AnalysisError, ParameterError
 from hdrive_mbs.worker_process import READY
 
@@ -42,6 +46,7 @@ class Team:
         self._running: list[Worker] = []
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._number = 0
+        self._threads = threads_of_each()
         self.lost: list[str] = []
 
     def __enter__(self) -> Self:
@@ -55,9 +60,12 @@ class Team:
             self._folder.cleanup()
 
     def dismiss(self, patience: float = PATIENCE) -> None:
-        """End the processes, which are idle, and with them what they keep; another map begins new ones."""
+        """End the processes, which have no items, and with them what they keep; another map begins new ones."""
         while self._running:
-            self._running.pop().end(patience)
+            worker = self._running.pop()
+            if worker.apart is not None:
+                worker.apart.state = "waiting"
+            worker.end(0.0 if worker.is_busy else patience)
 
     def map(
         self,
@@ -92,53 +100,141 @@ class Team:
         left = [k for k in range(len(items)) if k not in answers]
         if self._folder is None or len(left) < 2:
             for k in left:
-                finished(k, function(shared, items[k]))
+                with allowed(lambda: self._share(1 + self._apart)):
+                    answer = function(shared, items[k])
+                finished(k, answer)
         else:
             self._side_by_side(function, shared, {k: items[k] for k in left}, finished)
         return [answers[k] for k in range(len(items))]
 
-    def _side_by_side(
-        self, function: Callable[[Any, Item], Answer], shared: Any, items: dict[int, Item], finished: Callable[[int, Answer], None]
-    ) -> None:
+    def begin(self, function: Callable[[Any, Item], Answer], shared: Any, item: Item) -> Later:
+        """Begin function(shared, item) in a process of its own, for ``answer``; other work goes on meanwhile.
+
+        With a single process, or if all but one are at such work, nobody begins until it is asked for.
+        """
+        later = Later(function, shared, item)
+        if self._folder is not None and self._apart < self.workers - 1 and not self._is_done(later):
+            self._fill()
+            worker = next(one for one in self._running if not one.is_busy)
+            worker.give_apart(later, self._shared(shared))
+            later.state = "begun"
+        return later
+
+    def answer(self, later: Later) -> Any:
+        """The answer to what was begun; waits for it.  Raises what the function raises, and what ``map`` does."""
+        while later.state == "begun":
+            worker = next(one for one in self._running if one.apart is later)
+            self._threads.value = self._share(self._apart)
+            self._read(worker)
+        if later.state == "waiting":
+            [found] = self.map(later.function, later.shared, [later.item])
+            later.came(True, found)
+        if later.state == "failed":
+            raise later.answer
+        return later.answer
+
+    @property
+    def _apart(self) -> int:
+        """Processes at work that is asked for later."""
+        return sum(worker.apart is not None for worker in self._running)
+
+    def _share(self, busy: int) -> int:
+        """Threads for each of so many that are at work."""
+        return max(1, self.workers // max(busy, 1))
+
+    def _is_done(self, later: Later) -> bool:
+        """Whether the journal has its answer."""
+        found = None if self.journal is None else self.journal.read(self._key(later), later.item)
+        if found is not None:
+            later.came(True, found[0])
+        return found is not None
+
+    def _key(self, later: Later) -> str:
+        assert self.journal is not None
+        return self.journal.key(later.function, self.journal.identity(later.shared), later.item)
+
+    def _fill(self) -> None:
+        while len(self._running) < self.workers:
+            self._running.append(Worker.begun(self._threads))
+
+    def _shared(self, shared: Any) -> Path:
+        """A file with what items share."""
         assert self._folder is not None
         self._number += 1
         path = Path(self._folder.name) / f"{self._number}.pickle"
         path.write_bytes(packed(shared))
-        while len(self._running) < self.workers:
-            self._running.append(Worker.begun())
+        return path
+
+    def _read(self, worker: Worker) -> tuple[bool, Any] | None:
+        """The next message of a process, if it is an answer to an item: whether it is good, and the answer.
+
+        A process that dies at work for later is replaced, and that work waits until it is asked for.
+
+        Raises EOFError or OSError where a process died at an item.
+        """
+        try:
+            good, answer = worker.pipe.recv()
+        except (EOFError, OSError):
+            if worker.apart is None or not worker.ready:
+                raise
+            worker.apart.state = "waiting"
+            self.lost.append(f"{self._died(worker, worker.apart.item)} This process takes over when it is needed.")
+            self._running.append(Worker.begun(self._threads))
+            return None
+        if not worker.ready:
+            assert answer == READY
+            worker.ready = True
+            return None
+        if worker.apart is None:
+            return good, answer
+        later, worker.apart = worker.apart, None
+        later.came(good, answer)
+        if good and self.journal is not None:
+            self.journal.write(self._key(later), answer)
+        return None
+
+    def _side_by_side(
+        self, function: Callable[[Any, Item], Answer], shared: Any, items: dict[int, Item], finished: Callable[[int, Answer], None]
+    ) -> None:
+        path = self._shared(shared)
+        self._fill()
         waiting, begun_again = list(items), set[int]()
-        for worker in self._running:
-            if worker.ready and waiting:
+
+        def give(worker: Worker) -> None:
+            if waiting and worker.ready and not worker.is_busy:
                 worker.give(waiting[0], path, function, items[waiting.pop(0)])
+            self._threads.value = self._share(sum(one.is_busy for one in self._running))
+
+        for worker in self._running:
+            give(worker)
         while waiting or any(worker.at is not None for worker in self._running):
             for pipe in connection.wait([worker.pipe for worker in self._running]):
                 worker = next(one for one in self._running if one.pipe is pipe)
                 try:
-                    good, answer = worker.pipe.recv()
+                    found = self._read(worker)
                 except (EOFError, OSError):
-                    at, error = worker.at, self._died(worker, items)
+                    at = worker.at
+                    error = self._died(worker, None if at is None else items[at])
                     if not worker.ready or at in begun_again:
                         raise error from None
                     if at is not None:
                         begun_again.add(at)
                         waiting.insert(0, at)
                     self.lost.append(f"{error} Another one took over.")
-                    self._running.append(Worker.begun())
+                    self._running.append(Worker.begun(self._threads))
                     continue
-                if not good:
-                    raise answer
-                if not worker.ready:
-                    assert answer == READY
-                    worker.ready = True
-                else:
+                if found is not None:
+                    good, answer = found
+                    if not good:
+                        raise answer
                     assert worker.at is not None
                     number, worker.at = worker.at, None
                     finished(number, answer)
-                if waiting:
-                    worker.give(waiting[0], path, function, items[waiting.pop(0)])
+                if worker in self._running:
+                    give(worker)
         path.unlink(missing_ok=True)
 
-    def _died(self, worker: Worker, items: dict[int, Item]) -> AnalysisError:
+    def _died(self, worker: Worker, item: object) -> AnalysisError:
         self._running.remove(worker)
         how = worker.end(PATIENCE)
         kept = f" What is finished is kept in {self.journal.folder}." if self.journal is not None else ""
@@ -147,7 +243,7 @@ class Team:
                 f"A worker process of the diagnosis could not start ({how}; its own words are above). A script that calls diagnose"
                 " needs the line if __name__ == '__main__': before the call, since each process reads the script; or use workers=1."
             )
-        work = _named(items[worker.at]) if worker.at is not None else "nothing"
+        work = _named(item) if item is not None else "nothing"
         return AnalysisError(
             f"A worker process of the diagnosis died ({how}) at work on {work}; if memory was short, use fewer workers.{kept}"
         )

@@ -3,29 +3,42 @@
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import traceback
 from dataclasses import dataclass
 from multiprocessing import connection
+from multiprocessing.context import SpawnContext
 from pathlib import Path
 from typing import Any
 
+from hdrive_mbs.compiled.threads import allowed
 from hdrive_mbs.diagnosis.packing import packed, unpacked
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.freed_memory import give_back
 from hdrive_mbs.worker_process import READY, WorkerProcess, work_for_parent
 
 
+def threads_of_each() -> ctypes.c_int:
+    """A number that processes see change: threads that each of them may take while others have nothing to do."""
+    return SpawnContext().RawValue(ctypes.c_int, 1)
+
+
 @dataclass(eq=False, kw_only=True)
 class Worker(WorkerProcess):
-    """A process and the number of the item it is at; None while it has none."""
+    """A process and what it is at: the number of an item, or work that is asked for later; None while it has none."""
 
     at: int | None = None
+    apart: Later | None = None
     ready: bool = False
 
     @classmethod
-    def begun(cls) -> Worker:
+    def begun(cls, threads: ctypes.c_int) -> Worker:
         """A new process; it says READY once it has read this package."""
-        return cls.start(_work, name="diagnosis worker")
+        return cls.start(_work, threads, name="diagnosis worker")
+
+    @property
+    def is_busy(self) -> bool:
+        return self.at is not None or self.apart is not None
 
     def give(self, number: int, shared: Path, function: Any, item: Any) -> None:
         """An item to work on.  Raises ParameterError for one that cannot be sent."""
@@ -33,12 +46,35 @@ class Worker(WorkerProcess):
         self.at = number
         self.send((str(shared), data))
 
+    def give_apart(self, later: Later, shared: Path) -> None:
+        """Work that is asked for later; it may be given before the process is ready."""
+        data = packed((later.function, later.item))
+        self.apart = later
+        self.send((str(shared), data))
 
-def _work(pipe: connection.Connection) -> None:
+
+@dataclass(eq=False)
+class Later:
+    """Work that goes on beside other work: what was asked, and what has come of it.
+
+    state : "waiting" (nobody is at it), "begun", "good" or "failed" (``answer`` is the error)
+    """
+
+    function: Any
+    shared: Any
+    item: Any
+    state: str = "waiting"
+    answer: Any = None
+
+    def came(self, good: bool, answer: Any) -> None:
+        self.state, self.answer = "good" if good else "failed", answer
+
+
+def _work(pipe: connection.Connection, threads: ctypes.c_int) -> None:
     """Answer items until the pipe is closed: (True, answer) or (False, error with the lines where it arose)."""
     work_for_parent()
     known: dict[str, Any] = {}
-    with contextlib.suppress(EOFError, OSError):
+    with contextlib.suppress(EOFError, OSError), allowed(lambda: threads.value):
         pipe.send((True, READY))
         while True:
             path, data = pipe.recv()

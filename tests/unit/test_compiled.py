@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import threading
 
 import numpy as np
 import pytest
@@ -11,10 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import hdrive_mbs as hm
-from hdrive_mbs.compiled import lanes
+from hdrive_mbs.compiled import lanes, threads
 from hdrive_mbs.compiled import line as compiled_line
 from hdrive_mbs.compiled import machine as compiled_machine
-from hdrive_mbs.compiled.lanes import run_lanes
+from hdrive_mbs.compiled.lanes import Lanes, run_lanes
 from hdrive_mbs.compiled.line import CompiledLine, CompiledRun, run_many
 from hdrive_mbs.compiled.machine import machine, processor
 from hdrive_mbs.compiled.program import Program, program
@@ -24,6 +25,7 @@ from hdrive_mbs.expression import Expression, constant, evaluate, record, variab
 from hdrive_mbs.expression.node import NUMERIC
 from hdrive_mbs.expression.pieces import lines_between
 from models.harmonic_drive_train import build
+from tests.patience import PATIENCE
 
 x, v, t = variable("x"), variable("v"), variable("t")
 POINTS = (-2.5, -1.0, -0.3, -0.0, 0.0, 1e-9, 0.3, 1.0, 2.0, 3.75)
@@ -39,9 +41,9 @@ def computed(law: Expression, at_x: float, at_v: float, at_t: float = 0.5) -> fl
     """The law by machine code, the same in one lane and beside others."""
     made = law_program(law)
     width = processor().lanes
-    alone, _ = run_lanes([made], 1, np.array([[at_x, at_v]]), 1, 1.0, 1, at_t)
+    alone, _ = run_lanes(Lanes([made], 1), np.array([[at_x, at_v]]), 1, 1.0, 1, at_t)
     others = np.array([[at_x, at_v], [3.0, -1.0], *[[at_x, at_v]] * (width - 2)])
-    beside, _ = run_lanes([made] * width, width, others, 1, 1.0, 1, at_t)
+    beside, _ = run_lanes(Lanes([made] * width, width), others, 1, 1.0, 1, at_t)
     for lane in {0, width - 1} - {1}:
         assert_same(beside[0, lane, 0], alone[0, 0, 0])
     return float(alone[0, 0, 0])
@@ -187,6 +189,35 @@ def test_lines_of_several_structures_come_back_in_their_order() -> None:
         np.testing.assert_allclose(finished(found).values["motor.speed"], line.run(11, 2e-3, step=1e-5).values["motor.speed"], rtol=1e-12)
 
 
+def test_threads_change_no_bit_of_a_run() -> None:
+    scenes = [*trains(2 * processor().lanes + 1), with_effects(), build().replacing({"output_shaft.stiffness": 5e9})]
+    lines = [CompiledLine(scene.network(), CHANNELS) for scene in scenes]
+    alone = run_many(lines, 31, 1e-3, step=2e-5)
+    with threads.allowed(lambda: 3):
+        assert threads.at_hand() == 3
+        together = run_many(lines, 31, 1e-3, step=2e-5)
+    assert threads.at_hand() == 1
+    assert isinstance(alone[-1], SimulationError)
+    for one, other in zip(alone, together, strict=True):
+        if isinstance(one, SimulationError):
+            assert str(other) == str(one)
+            continue
+        for name in CHANNELS:
+            np.testing.assert_array_equal(finished(other).values[name], one.values[name], err_msg=name)
+
+
+def test_threads_run_side_by_side_and_give_their_answers_in_order() -> None:
+    meeting = threading.Barrier(3, timeout=PATIENCE)  # nobody passes before three are there
+
+    def meet(number: int) -> int:
+        meeting.wait()
+        return number
+
+    with threads.allowed(lambda: 3):
+        assert threads.side_by_side(meet, range(6)) == list(range(6))
+    assert threads.side_by_side(lambda number: -number, range(3)) == [0, -1, -2]
+
+
 def test_a_lane_that_diverges_leaves_the_others_alone() -> None:
     nominal = CompiledLine(build().network(), CHANNELS)
     stiff = CompiledLine(build().replacing({"output_shaft.stiffness": 5e9}).network(), CHANNELS)
@@ -292,7 +323,7 @@ def test_functions_of_all_lanes_are_exact_over_their_range(name: str) -> None:
     got = []
     for first in range(0, len(at), width):
         states = np.column_stack((at[first : first + width], np.zeros(width)))
-        got += list(run_lanes([made] * width, width, states, 1, 1.0, 1, 0.0)[0][0, :, 0])
+        got += list(run_lanes(Lanes([made] * width, width), states, 1, 1.0, 1, 0.0)[0][0, :, 0])
     # numpy's functions are good to one unit in the last place; beside zeros of sin and cos at 1e4 rad 1e-29 is left
     np.testing.assert_allclose(
         got, {"sin": np.sin, "cos": np.cos, "exp": np.exp, "tanh": np.tanh, "log": np.log}[name](at), rtol=2e-15, atol=2e-29

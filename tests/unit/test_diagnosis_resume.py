@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
+from hdrive_mbs.compiled import threads
 from hdrive_mbs.diagnosis import gather
 from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.digest import digest
@@ -374,20 +375,102 @@ def diagnosis_trials() -> list[Trial]:
     return [trial for record in quiet() for trial in known.trials(record)]
 
 
-def test_the_first_fit_and_the_place_that_are_found_side_by_side_are_taken_from_the_journal(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(gather, "bends", lambda fine: True)
-    coarse, fine = (Simulator(diagnosis_trials(), 1e-3, every) for every in (4, 1))
+@pytest.mark.parametrize("workers", [1, 2])
+def test_the_place_that_is_looked_for_beside_the_search_is_taken_from_the_journal(tmp_path: Path, workers: int) -> None:
+    fine = Simulator(diagnosis_trials(), 1e-3)
     found = []
     for _ in range(2):
         journal = Journal(tmp_path, {"inputs": 1})
-        with Team(1, journal) as team:
-            found.append(gather._begun(team, coarse, fine, factors_of(bench()), lambda *said: None))
-    assert journal.taken == 2
-    (first, place), (again, place_again) = found
-    np.testing.assert_array_equal(first.z, again.z)
-    assert place is not None
-    assert place_again is not None
-    assert place.places == place_again.places
-    assert place.doubt == place_again.doubt
+        with Team(workers, journal) as team:
+            found.append(team.answer(team.begin(gather._placed, fine, factors_of(bench()))))
+    assert journal.taken == 1
+    place, again = found
+    assert place.places == again.places
+    assert place.doubt == again.doubt
+
+
+def wait_for(path: Path, item: float) -> float:
+    """The item, once there is such a file."""
+    until = time.monotonic() + PATIENCE
+    while not path.exists():
+        assert time.monotonic() < until
+        time.sleep(0.01)
+    return item
+
+
+def test_what_is_begun_goes_on_beside_other_work(team: Team, tmp_path: Path) -> None:
+    later = team.begin(wait_for, tmp_path / "ready", 7.0)
+    assert team.map(double, 2, list(range(5))) == [0, 2, 4, 6, 8]  # by the other process, while this one waits
+    assert later.state == "begun"
+    (tmp_path / "ready").write_text("")
+    assert team.answer(later) == team.answer(later) == 7.0
+    assert team.map(double, 3, [1, 2, 3]) == [3, 6, 9]
+    assert not team.lost
+
+
+def test_an_answer_that_comes_in_during_other_work_is_kept(team: Team) -> None:
+    later = team.begin(double, 2, 4)
+    for _ in range(100):
+        team.map(double, 2, [1, 2])
+        if later.state == "good":
+            break
+    assert later.state == "good"
+    assert team.answer(later) == 8
+
+
+def test_nobody_begins_before_it_is_asked_for_where_no_process_would_be_left(team: Team, tmp_path: Path) -> None:
+    first, second = team.begin(wait_for, tmp_path / "ready", 1.0), team.begin(double, 2, 3)
+    assert (first.state, second.state) == ("begun", "waiting")
+    assert team.answer(second) == 6
+    (tmp_path / "ready").write_text("")
+    assert team.answer(first) == 1.0
+    with Team(1) as alone:
+        assert alone.begin(double, 2, 3).state == "waiting"
+
+
+def test_work_for_later_is_done_here_if_its_process_dies(team: Team, tmp_path: Path) -> None:
+    later = team.begin(die_once, tmp_path / "marker", 1)
+    assert team.answer(later) == 10
+    [said] = team.lost
+    assert "died (signal SIGKILL) at work on int" in said
+    assert said.endswith("This process takes over when it is needed.")
+    assert team.map(double, 2, [1, 2, 3]) == [2, 4, 6]
+
+
+def test_an_error_in_work_for_later_is_raised_when_it_is_asked_for(team: Team) -> None:
+    later = team.begin(fail, None, 1)
+    assert team.map(double, 2, [1, 2]) == [2, 4]
+    for _ in range(2):
+        with pytest.raises(hm.ParameterError, match="is wrong"):
+            team.answer(later)
+
+
+def test_work_for_later_of_a_team_that_was_dismissed_is_done_when_it_is_asked_for(team: Team) -> None:
+    later = team.begin(double, 2, 21)
+    team.dismiss()
+    assert team.answer(later) == 42
+
+
+def threads_in_the_end(shared: Path, item: str) -> int:
+    """Threads that runs may take, once all others are done: of item "last" when they have written their files."""
+    if item != "last":
+        (shared / item).write_text("")
+        return 0
+    until = time.monotonic() + PATIENCE
+    while threads.at_hand() < 2 and time.monotonic() < until:
+        time.sleep(0.01)
+    return threads.at_hand()
+
+
+def test_who_is_left_alone_at_work_may_take_the_threads_of_the_others(team: Team, tmp_path: Path) -> None:
+    assert team.map(threads_in_the_end, tmp_path, ["last", "a", "b"])[0] == 2
+    assert team.map(threads_in_the_end, tmp_path, ["last"]) == [2]
+    assert threads.at_hand() == 1
+    later = team.begin(wait_for, tmp_path / "ready", 1.0)
+    assert team.map(number_of_threads, None, [0]) == [1]  # a core is taken
+    (tmp_path / "ready").write_text("")
+    team.answer(later)
+
+
+def number_of_threads(shared: None, item: int) -> int:
+    return threads.at_hand()
