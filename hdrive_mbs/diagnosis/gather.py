@@ -114,7 +114,12 @@ def _placed(fine: Simulator, factors: Sequence[Factor]) -> Located:
     return located(fine, nominal)
 
 
-def _looked_up(team: Team, place: Later, said: Report) -> Located:
+def _ask_where(team: Team, fine: Simulator, factors: Sequence[Factor]) -> Later | None:
+    """Begin to look where the gap lies, beside the search: on rotor lines alone, which need neither a fit nor what a search finds."""
+    return team.begin(_placed, fine, tuple(factors)) if bends(fine) else None
+
+
+def _told_where(team: Team, place: Later, said: Report) -> Located:
     said("looking where the gap lies", 0, 1)
     found: Located = team.answer(place)
     said("looking where the gap lies", 1, 1)
@@ -202,12 +207,12 @@ def gather(
     Raises AnalysisError where the nominal model cannot be simulated.
     """
     said = report or (lambda stage, done, total: None)
-    elsewhere = team.begin(_placed, fine, tuple(factors)) if bends(fine) else None
+    asked = _ask_where(team, fine, factors)
     [null] = team.map(fit_nominal, coarse, [tuple(factors)], partial(said, "fitting the nominal model"))
     unseen = _unseen(coarse, null)
     coarse, fine = coarse.knowing(unseen), fine.knowing(unseen)
     single = search(team, coarse, null, groups, tried, report=said)
-    place = None if elsewhere is None else _looked_up(team, elsewhere, said)
+    place = None if asked is None else _told_where(team, asked, said)
     there = _there(team, coarse, null, single, place, tried, said)
     single = _with(single, there)
     pair, double, others = _second(team, coarse, null, groups, tried, single, there, said)

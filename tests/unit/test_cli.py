@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 import hdrive_mbs as hm
-from hdrive_mbs.cli.main import app
+from hdrive_mbs.cli.main import app, main
 from models.harmonic_drive_train import build
 from tests.patience import PATIENCE
 
@@ -127,7 +127,20 @@ def test_json_to_stdout_is_nothing_but_json() -> None:
         (("torsion", TRAIN, "--at", "gaer"), ("gaer", "gear")),
     ],
 )
-def test_foreseen_errors_name_the_thing_and_the_way_out(arguments: tuple[str, ...], words: tuple[str, ...]) -> None:
-    message = fails(*arguments)
+def test_foreseen_errors_name_the_thing_and_the_way_out(
+    arguments: tuple[str, ...], words: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In this process; a process of its own says the same (the next test)."""
+    monkeypatch.setattr(sys, "argv", ["hdrive-mbs", *arguments])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 2
+    message = capsys.readouterr().err
     for word in words:
         assert word in message
+
+
+def test_a_foreseen_error_of_a_process_is_said_without_a_traceback() -> None:
+    message = fails("run", TRAIN, "--solver", "runge-kutta-4", "--step", "1e-3")
+    assert message.startswith("error: ")
+    assert "beyond its limit of stability" in message

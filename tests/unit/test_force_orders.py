@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.at_the_place import those_at
-from hdrive_mbs.diagnosis.candidates import candidates
+from hdrive_mbs.diagnosis.candidates import Candidate, candidates
 from hdrive_mbs.diagnosis.force_orders import ForceOrders
 from hdrive_mbs.diagnosis.locate.latent_force import TurnedForce
 from models import rotor_bench
@@ -69,6 +71,11 @@ def test_where_nothing_turns_and_for_frequencies_the_residuals_are_asked() -> No
     assert orders.width("turn") == WIDTH
 
 
+@cache
+def all_of_the_rotor_bench() -> list[Candidate]:
+    return candidates(rotor_bench.bench().scene)
+
+
 @pytest.mark.parametrize(
     ("place", "there", "elsewhere"),
     [
@@ -80,6 +87,6 @@ def test_where_nothing_turns_and_for_frequencies_the_residuals_are_asked() -> No
     ],
 )
 def test_laws_of_a_place_are_those_that_act_there(place: str, there: set[tuple[str, str]], elsewhere: set[tuple[str, str]]) -> None:
-    found = {(item.kind.__name__, item.at) for item in those_at(place, candidates(rotor_bench.bench().scene))}
+    found = {(item.kind.__name__, item.at) for item in those_at(place, all_of_the_rotor_bench())}
     assert there <= found
     assert not elsewhere & found

@@ -345,7 +345,6 @@ def test_an_observer_forgets_a_vibration_soon_after_its_force_has_ended() -> Non
 def test_a_diagnosis_looks_for_the_place_from_the_model_as_given_on_rotor_lines_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """A missing cause bends the refitted model of a rotor line, and the localisation refits on its own."""
     for name, made in {
-        "fit_nominal": lambda coarse, factors: "refitted",
         "as_given": lambda fine, nominal: "as given",
         "located": lambda fine, about: f"about the model {about}",
     }.items():
@@ -359,7 +358,8 @@ def test_a_diagnosis_looks_for_the_place_from_the_model_as_given_on_rotor_lines_
     for kind, wanted in (("lateral", "as given"), ("torsional", "refitted")):
         fine: Any = SimpleNamespace(trials=trials[kind])
         with Team(1) as team:
-            _, place = gather._begun(team, fine, fine, (), lambda *said: None)
+            asked = gather._ask_where(team, fine, ())
+            place = None if asked is None else gather._told_where(team, asked, lambda *said: None)
             last = all_samples.on_all_samples(team, fine, null, [], place, lambda *said: None)
         assert last.place == f"about the model {wanted}"
 
