@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -50,13 +51,26 @@ class MatrixElement:
     def contribution(self, moment: Moment) -> dict[str, Value]:
         """Forces -(K q + D q'); the mass enters the equations of motion on its own."""
         result: dict[str, Value] = {}
-        for i, target in enumerate(self.coordinates):
+        for target, springs, dampers in self._rows:
             force: Value = 0.0
-            for matrix, values in ((self.stiffness, moment.angles), (self.damping, moment.speeds)):
-                for j in np.flatnonzero(matrix[i]):
-                    force = force - float(matrix[i, j]) * values[self.coordinates[j]]
+            for factor, name in springs:
+                force = force - factor * moment.angles[name]
+            for factor, name in dampers:
+                force = force - factor * moment.speeds[name]
             result[target] = force
         return result
+
+    @cached_property
+    def _rows(self) -> tuple[tuple[str, list[tuple[float, str]], list[tuple[float, str]]], ...]:
+        """Of each coordinate what is not zero of its stiffness and of its damping."""
+        return tuple(zip(self.coordinates, self._sparse(self.stiffness), self._sparse(self.damping), strict=True))
+
+    def _sparse(self, matrix: FloatArray) -> list[list[tuple[float, str]]]:
+        rows: list[list[tuple[float, str]]] = [[] for _ in self.coordinates]
+        at = np.nonzero(matrix)
+        for i, j, factor in zip(*(part.tolist() for part in at), matrix[at].tolist(), strict=True):
+            rows[i].append((factor, self.coordinates[j]))
+        return rows
 
     def power(self, moment: Moment) -> Value:
         """Power that stiffness and damping take from the coordinates [W]."""
