@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.errors import ParameterError
-from hdrive_mbs.expression import Value
+from hdrive_mbs.expression import Expression, Value
 from hdrive_mbs.quantities import Described
 
 
@@ -33,6 +35,8 @@ def lines(x: Value, xs: Sequence[float], ys: Sequence[float]) -> Value:
     return np.interp(x, xs, ys) + first * np.minimum(x - xs[0], 0.0) + last * np.maximum(x - xs[-1], 0.0)
 
 
+FloatArray = npt.NDArray[np.float64]
+
 EDGE = 1e-3
 """Length of the edge between two held values, over the shortest time that one is held."""
 
@@ -43,7 +47,38 @@ def held(x: Value, xs: Sequence[float], ys: Sequence[float]) -> Value:
     A change is a steep line centred on its point, where the mean of both values stands: so a solver whose steps
     meet the points adds up exactly what was held.
     """
+    corners = _corners(xs, ys)
+    return np.interp(x, *(corners.recorded if isinstance(x, Expression) else corners.arrays))
+
+
+@dataclass(frozen=True, eq=False)
+class _Corners:
+    """Ends of the edges and the values there; equal tuples for a law that is recorded, so that a long table is read once."""
+
+    made_from: tuple[Any, Any]
+    arrays: tuple[FloatArray, FloatArray]
+    recorded: tuple[tuple[float, ...], tuple[float, ...]]
+
+
+_KEPT = 16
+
+_known: dict[tuple[int, int], _Corners] = {}
+"""Those of the tables that were read last."""
+
+
+def _corners(xs: Sequence[float], ys: Sequence[float]) -> _Corners:
+    """The same ones for the same tuples, which cannot change."""
+    found = _known.pop((id(xs), id(ys)), None) or _made(xs, ys)
+    if type(xs) is tuple and type(ys) is tuple:
+        _known[id(xs), id(ys)] = found
+        if len(_known) > _KEPT:
+            del _known[next(iter(_known))]
+    return found
+
+
+def _made(xs: Sequence[float], ys: Sequence[float]) -> _Corners:
     points, values = np.asarray(xs, float), np.asarray(ys, float)
     half = 0.5 * EDGE * float(np.min(np.diff(points)))
-    corners: npt.NDArray[np.float64] = np.column_stack((points[1:] - half, points[1:] + half)).ravel()
-    return np.interp(x, corners, np.repeat(values, 2)[1:-1])
+    corners: FloatArray = np.column_stack((points[1:] - half, points[1:] + half)).ravel()
+    between: FloatArray = np.repeat(values, 2)[1:-1]
+    return _Corners((xs, ys), (corners, between), (tuple(corners.tolist()), tuple(between.tolist())))

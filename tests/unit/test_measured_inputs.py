@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from scipy.linalg import expm
 
 import hdrive_mbs as hm
-from hdrive_mbs.expression import gradient
+from hdrive_mbs.expression import gradient, record, variable
 from hdrive_mbs.tables import EDGE, held
 from tests.unit.law_checks import assert_records_itself
 
@@ -50,6 +50,16 @@ def test_a_held_table_keeps_each_value_until_the_next_time_and_its_edges_are_cen
 
 def test_a_held_table_records_itself() -> None:
     assert_records_itself(lambda time: held(time, TIMES, VALUES), np.random.default_rng(5).uniform(-0.001, 0.006, 300))
+
+
+def test_a_held_table_is_recorded_once_for_the_same_tuples_and_read_anew_from_what_can_change() -> None:
+    times, values = [0.0, 1.0, 2.0], [1.0, 2.0, 3.0]
+    tables = [record(held(variable("t"), TIMES, VALUES)).data for _ in range(2)]
+    assert tables[0] is tables[1]
+    assert record(held(variable("t"), tuple(times), tuple(values))).data is not tables[0]
+    assert held(1.5, times, values) == 2.0
+    values[1] = 7.0
+    assert held(1.5, times, values) == 7.0
 
 
 # -- forces across the axis ----------------------------------------------------------------------------
