@@ -116,16 +116,23 @@ class Team:
         if self._folder is not None and self._apart < self.workers - 1 and not self._is_done(later):
             self._fill()
             worker = next(one for one in self._running if not one.is_busy)
-            worker.give_apart(later, self._shared(shared))
+            later.file = self._shared(shared)
+            worker.give_apart(later)
             later.state = "begun"
+            self._share_with_this()
         return later
 
     def answer(self, later: Later) -> Any:
         """The answer to what was begun; waits for it.  Raises what the function raises, and what ``map`` does."""
         while later.state == "begun":
             worker = next(one for one in self._running if one.apart is later)
-            self._threads.value = self._share(self._apart)
-            self._read(worker)
+            self._threads.value = self._share(self._apart)  # this process only waits
+            try:
+                self._read(worker)
+            except (EOFError, OSError):
+                raise self._died(worker, later.item) from None
+            finally:
+                self._share_with_this()
         if later.state == "waiting":
             [found] = self.map(later.function, later.shared, [later.item])
             later.came(True, found)
@@ -141,6 +148,10 @@ class Team:
     def _share(self, busy: int) -> int:
         """Threads for each of so many that are at work."""
         return max(1, self.workers // max(busy, 1))
+
+    def _share_with_this(self) -> None:
+        """Threads of processes at work for later while this one is at work too."""
+        self._threads.value = self._share(1 + self._apart)
 
     def _is_done(self, later: Later) -> bool:
         """Whether the journal has its answer."""
@@ -168,7 +179,7 @@ class Team:
     def _read(self, worker: Worker) -> tuple[bool, Any] | None:
         """The next message of a process, if it is an answer to an item: whether it is good, and the answer.
 
-        A process that dies at work for later is replaced, and that work waits until it is asked for.
+        A process that dies at work for later is gone, and that work waits until it is asked for.
 
         Raises EOFError or OSError where a process died at an item.
         """
@@ -177,9 +188,7 @@ class Team:
         except (EOFError, OSError):
             if worker.apart is None or not worker.ready:
                 raise
-            worker.apart.state = "waiting"
             self.lost.append(f"{self._died(worker, worker.apart.item)} This process takes over when it is needed.")
-            self._running.append(Worker.begun(self._threads))
             return None
         if not worker.ready:
             assert answer == READY
@@ -189,6 +198,8 @@ class Team:
             return good, answer
         later, worker.apart = worker.apart, None
         later.came(good, answer)
+        if later.file is not None:
+            later.file.unlink(missing_ok=True)
         if good and self.journal is not None:
             self.journal.write(self._key(later), answer)
         return None
@@ -205,37 +216,49 @@ class Team:
                 worker.give(waiting[0], path, function, items[waiting.pop(0)])
             self._threads.value = self._share(sum(one.is_busy for one in self._running))
 
-        for worker in self._running:
-            give(worker)
-        while waiting or any(worker.at is not None for worker in self._running):
-            for pipe in connection.wait([worker.pipe for worker in self._running]):
-                worker = next(one for one in self._running if one.pipe is pipe)
-                try:
-                    found = self._read(worker)
-                except (EOFError, OSError):
-                    at = worker.at
-                    error = self._died(worker, None if at is None else items[at])
-                    if not worker.ready or at in begun_again:
-                        raise error from None
-                    if at is not None:
-                        begun_again.add(at)
-                        waiting.insert(0, at)
-                    self.lost.append(f"{error} Another one took over.")
-                    self._running.append(Worker.begun(self._threads))
-                    continue
-                if found is not None:
-                    good, answer = found
-                    if not good:
-                        raise answer
-                    assert worker.at is not None
-                    number, worker.at = worker.at, None
-                    finished(number, answer)
-                if worker in self._running:
-                    give(worker)
-        path.unlink(missing_ok=True)
+        try:
+            for worker in self._running:
+                give(worker)
+            while waiting or any(worker.at is not None for worker in self._running):
+                for pipe in connection.wait([worker.pipe for worker in self._running]):
+                    worker = next(one for one in self._running if one.pipe is pipe)
+                    try:
+                        found = self._read(worker)
+                    except (EOFError, OSError):
+                        at = worker.at
+                        error = self._died(worker, None if at is None else items[at])
+                        if not worker.ready or at in begun_again:
+                            raise error from None
+                        if at is not None:
+                            begun_again.add(at)
+                            waiting.insert(0, at)
+                        self.lost.append(f"{error} Another one took over.")
+                        self._running.append(Worker.begun(self._threads))
+                        continue
+                    if found is not None:
+                        good, answer = found
+                        if not good:
+                            raise answer
+                        assert worker.at is not None
+                        number, worker.at = worker.at, None
+                        finished(number, answer)
+                    if worker in self._running:
+                        give(worker)
+                    else:
+                        self._fill()
+        except BaseException:
+            for worker in [one for one in self._running if one.at is not None]:  # nobody asks for their answers any more
+                self._running.remove(worker)
+                worker.end()
+            raise
+        finally:
+            path.unlink(missing_ok=True)
+            self._share_with_this()
 
     def _died(self, worker: Worker, item: object) -> AnalysisError:
         self._running.remove(worker)
+        if worker.apart is not None:
+            worker.apart.state = "waiting"
         how = worker.end(PATIENCE)
         kept = f" What is finished is kept in {self.journal.folder}." if self.journal is not None else ""
         if not worker.ready:

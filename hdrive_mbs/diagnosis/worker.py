@@ -46,11 +46,11 @@ class Worker(WorkerProcess):
         self.at = number
         self.send((str(shared), data))
 
-    def give_apart(self, later: Later, shared: Path) -> None:
+    def give_apart(self, later: Later) -> None:
         """Work that is asked for later; it may be given before the process is ready."""
         data = packed((later.function, later.item))
         self.apart = later
-        self.send((str(shared), data))
+        self.send((str(later.file), data))
 
 
 @dataclass(eq=False)
@@ -58,6 +58,7 @@ class Later:
     """Work that goes on beside other work: what was asked, and what has come of it.
 
     state : "waiting" (nobody is at it), "begun", "good" or "failed" (``answer`` is the error)
+    file : what a process reads of ``shared``
     """
 
     function: Any
@@ -65,6 +66,7 @@ class Later:
     item: Any
     state: str = "waiting"
     answer: Any = None
+    file: Path | None = None
 
     def came(self, good: bool, answer: Any) -> None:
         self.state, self.answer = "good" if good else "failed", answer

@@ -437,6 +437,38 @@ def test_work_for_later_is_done_here_if_its_process_dies(team: Team, tmp_path: P
     assert team.map(double, 2, [1, 2, 3]) == [2, 4, 6]
 
 
+def fail_or_wait(shared: Path, item: int) -> int:
+    if item == 0:
+        raise hm.ParameterError("item 0 is wrong")
+    return int(wait_for(shared, item))
+
+
+def test_after_an_error_a_team_goes_on_and_nobody_gets_an_answer_to_an_older_question(team: Team, tmp_path: Path) -> None:
+    assert team.map(double, 2, [1, 2]) == [2, 4]  # both processes are there
+    for _ in range(3):
+        with pytest.raises(hm.ParameterError, match="item 0 is wrong"):
+            team.map(fail_or_wait, tmp_path / "never", [0, 1, 1])
+        assert team.map(double, 3, [1, 2, 3]) == [3, 6, 9]
+    later = team.begin(double, 2, 5)
+    assert team.answer(later) == 10
+
+
+def test_work_for_later_of_a_script_without_its_main_line_is_told_so(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text("from hdrive_mbs.diagnosis.team import Team\nwith Team(2) as team:\n    team.answer(team.begin(max, 1, 2))\n")
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=PATIENCE)
+    assert done.returncode != 0
+    assert "needs the line if __name__ == '__main__'" in done.stderr
+
+
+def test_what_later_work_reads_is_let_go_when_its_answer_is_there(team: Team) -> None:
+    later = team.begin(double, 2, 5)
+    assert later.file is not None
+    assert later.file.exists()
+    assert team.answer(later) == 10
+    assert not later.file.exists()
+
+
 def test_an_error_in_work_for_later_is_raised_when_it_is_asked_for(team: Team) -> None:
     later = team.begin(fail, None, 1)
     assert team.map(double, 2, [1, 2]) == [2, 4]
@@ -468,6 +500,8 @@ def test_who_is_left_alone_at_work_may_take_the_threads_of_the_others(team: Team
     assert threads.at_hand() == 1
     later = team.begin(wait_for, tmp_path / "ready", 1.0)
     assert team.map(number_of_threads, None, [0]) == [1]  # a core is taken
+    assert team.map(double, 2, [1, 2, 3]) == [2, 4, 6]
+    assert team._threads.value == 1  # of the process that waits, and of this one
     (tmp_path / "ready").write_text("")
     team.answer(later)
 
