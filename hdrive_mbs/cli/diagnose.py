@@ -75,7 +75,7 @@ def diagnose(
         _leave(work)
         raise
     write_answer(result, folder)
-    shutil.rmtree(work)
+    shutil.rmtree(work, ignore_errors=True)  # the answer is written: what is left of the work harms nobody
     if json is not None:
         from hdrive_mbs.diagnosis.report_json import report_document
 
