@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Expression, Value
+from hdrive_mbs.expression.by_identity import ByIdentity
 from hdrive_mbs.quantities import Described
 
 
@@ -47,38 +47,24 @@ def held(x: Value, xs: Sequence[float], ys: Sequence[float]) -> Value:
     A change is a steep line centred on its point, where the mean of both values stands: so a solver whose steps
     meet the points adds up exactly what was held.
     """
-    corners = _corners(xs, ys)
+    corners = _known.of(xs, ys, lambda: _corners(xs, ys))
     return np.interp(x, *(corners.recorded if isinstance(x, Expression) else corners.arrays))
 
 
 @dataclass(frozen=True, eq=False)
 class _Corners:
-    """Ends of the edges and the values there; equal tuples for a law that is recorded, so that a long table is read once."""
+    """Ends of the edges and the values there; as tuples for a law that is recorded, which reads the same ones once."""
 
-    made_from: tuple[Any, Any]
     arrays: tuple[FloatArray, FloatArray]
     recorded: tuple[tuple[float, ...], tuple[float, ...]]
 
 
-_KEPT = 16
-
-_known: dict[tuple[int, int], _Corners] = {}
-"""Those of the tables that were read last."""
+_known: ByIdentity[_Corners] = ByIdentity(16)
 
 
 def _corners(xs: Sequence[float], ys: Sequence[float]) -> _Corners:
-    """The same ones for the same tuples, which cannot change."""
-    found = _known.pop((id(xs), id(ys)), None) or _made(xs, ys)
-    if type(xs) is tuple and type(ys) is tuple:
-        _known[id(xs), id(ys)] = found
-        if len(_known) > _KEPT:
-            del _known[next(iter(_known))]
-    return found
-
-
-def _made(xs: Sequence[float], ys: Sequence[float]) -> _Corners:
     points, values = np.asarray(xs, float), np.asarray(ys, float)
     half = 0.5 * EDGE * float(np.min(np.diff(points)))
     corners: FloatArray = np.column_stack((points[1:] - half, points[1:] + half)).ravel()
     between: FloatArray = np.repeat(values, 2)[1:-1]
-    return _Corners((xs, ys), (corners, between), (tuple(corners.tolist()), tuple(between.tolist())))
+    return _Corners((corners, between), (tuple(corners.tolist()), tuple(between.tolist())))

@@ -15,6 +15,7 @@ from hdrive_mbs.diagnosis.choosing import enough, leaves
 from hdrive_mbs.diagnosis.differences import jacobian, unseen_in
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.later import Later
 from hdrive_mbs.diagnosis.located import Located, bends, located
 from hdrive_mbs.diagnosis.pairs import alone, contenders, joined, moved, swapped
 from hdrive_mbs.diagnosis.search import Depth, Report, Search, fit_nominal, search
@@ -24,7 +25,6 @@ from hdrive_mbs.diagnosis.tasks import Found, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import TIED, left
-from hdrive_mbs.diagnosis.worker import Later
 from hdrive_mbs.errors import AnalysisError
 
 LEFT = 1.1

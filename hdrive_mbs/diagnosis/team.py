@@ -18,8 +18,9 @@ from typing import Any, Self, TypeVar
 
 from hdrive_mbs.compiled.threads import allowed
 from hdrive_mbs.diagnosis.journal import Journal
+from hdrive_mbs.diagnosis.later import Later
 from hdrive_mbs.diagnosis.packing import packed
-from hdrive_mbs.diagnosis.worker import Later, Worker, threads_of_each
+from hdrive_mbs.diagnosis.worker import Worker, threads_of_each
 from hdrive_mbs.errors import AnalysisError, ParameterError
 from hdrive_mbs.worker_process import READY
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from hdrive_mbs.compiled.threads import allowed
+from hdrive_mbs.diagnosis.later import Later
 from hdrive_mbs.diagnosis.packing import packed, unpacked
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.freed_memory import give_back
@@ -51,25 +52,6 @@ class Worker(WorkerProcess):
         data = packed((later.function, later.item))
         self.apart = later
         self.send((str(later.file), data))
-
-
-@dataclass(eq=False)
-class Later:
-    """Work that goes on beside other work: what was asked, and what has come of it.
-
-    state : "waiting" (nobody is at it), "begun", "good" or "failed" (``answer`` is the error)
-    file : what a process reads of ``shared``
-    """
-
-    function: Any
-    shared: Any
-    item: Any
-    state: str = "waiting"
-    answer: Any = None
-    file: Path | None = None
-
-    def came(self, good: bool, answer: Any) -> None:
-        self.state, self.answer = "good" if good else "failed", answer
 
 
 def _work(pipe: connection.Connection, threads: ctypes.c_int) -> None:

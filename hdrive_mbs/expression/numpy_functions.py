@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from hdrive_mbs.expression.by_identity import ByIdentity
 from hdrive_mbs.expression.node import (
     FUNCTIONS,
     UFUNCS,
@@ -27,23 +28,16 @@ from hdrive_mbs.expression.node import (
 )
 from hdrive_mbs.expression.pieces import Pieces, lines_between
 
-_KEPT = 64
-
-_tables: dict[tuple[int, int], tuple[Any, Any, Pieces]] = {}
-"""Tables of the laws recorded last, with the tuples that they were made from."""
+_tables: ByIdentity[Pieces] = ByIdentity(64)
+"""Tables of the laws recorded last: a long table is read once, however often its law is recorded."""
 
 
 def _interp(x: Any, xp: Sequence[float], fp: Sequence[float], left: Any = None, right: Any = None, period: Any = None) -> Expression:
     """np.interp as one node, however long the table is."""
     if period is not None:
         raise TraceError("np.interp with period= cannot be recorded; write np.interp(np.mod(x, period), ...)")
-    if left is None and right is None and type(xp) is tuple and type(fp) is tuple:
-        # tuples cannot change: a long table is read once, however often its law is recorded
-        kept = _tables.pop((id(xp), id(fp)), None) or (xp, fp, _lines(xp, fp, left, right))
-        _tables[id(xp), id(fp)] = kept
-        if len(_tables) > _KEPT:
-            del _tables[next(iter(_tables))]
-        return as_node(kept[2](as_node(x)))
+    if left is None and right is None:
+        return as_node(_tables.of(xp, fp, lambda: _lines(xp, fp, None, None))(as_node(x)))
     return as_node(_lines(xp, fp, left, right)(as_node(x)))
 
 

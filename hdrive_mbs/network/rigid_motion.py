@@ -48,7 +48,7 @@ def _matrix(rows: list[list[FloatArray]]) -> FloatArray:
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """a x b of vectors in the last direction, which ``np.cross`` takes three times as long for."""
+    """a x b of vectors in the last direction; most of what ``np.cross`` does for one pair of them is to look at their shapes."""
     found = np.empty(np.broadcast_shapes(a.shape, b.shape))
     for k, i, j in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         found[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]

@@ -14,7 +14,7 @@ import pytest
 pytest.importorskip("pyarrow", reason="withheld cases are Parquet files")
 
 from benchmarks.withheld import methods, run, scoring
-from benchmarks.withheld.answer import answer_of, failed_answer
+from benchmarks.withheld.answer import NAMED, answer_of, failed_answer
 from benchmarks.withheld.calibrate import grid, known_constants
 from benchmarks.withheld.calibration import chance_error, curve, expected_error, log_loss
 from benchmarks.withheld.case_score import closed, interval, score, shares
@@ -130,18 +130,18 @@ def test_a_name_that_is_tied_with_a_cause_without_one_is_claimed() -> None:
     answer = answer_of("drive-c01", given, DRIVE)
     assert claimed(answer) == [("friction_load", "load")]
     assert answer["indistinguishable"] == [["friction_load", "load"]]
-    # 0.9 in all, shared as 0.5 : 7 x 0.4
-    assert answer["effects"][0]["probability"] == pytest.approx(0.9 * 2.8 / 3.3)
+    # 0.9 in all, shared as 0.5 : 0.4 NAMED
+    assert answer["effects"][0]["probability"] == pytest.approx(0.9 * 0.4 * NAMED / (0.5 + 0.4 * NAMED))
     assert {item["effect"]: item["probability"] for item in answer["ranking"]} == {
-        "friction_load": pytest.approx(0.9 * 2.8 / 3.3),
-        "unknown": pytest.approx(0.9 * 0.5 / 3.3),
+        "friction_load": pytest.approx(0.9 * 0.4 * NAMED / (0.5 + 0.4 * NAMED)),
+        "unknown": pytest.approx(0.9 * 0.5 / (0.5 + 0.4 * NAMED)),
         "none": 0.1,
     }
-    assert answer["where"][0] == {"at": "load", "probability": pytest.approx(0.9 * 2.8 / 3.3)}
+    assert answer["where"][0] == {"at": "load", "probability": pytest.approx(0.9 * 0.4 * NAMED / (0.5 + 0.4 * NAMED))}
 
 
 def test_a_claim_with_a_name_is_likelier_than_a_tie_without_one_and_alike_with_a_name() -> None:
-    for other, share in ((("friction", "gear.flexspline"), 0.9 * 3.5 / 3.9), (("kinematic_error", "gear"), 0.5)):
+    for other, share in ((("friction", "gear.flexspline"), 0.9 * 0.5 * NAMED / (0.5 * NAMED + 0.4)), (("kinematic_error", "gear"), 0.5)):
         tied = (("friction", "load"), other)
         given = finding("effect", tied[0], tied=tied, ranking={tied[0]: 0.5, tied[1]: 0.4, ("none", ""): 0.1})
         assert answer_of("drive-c01", given, DRIVE)["effects"][0]["probability"] == pytest.approx(share)
@@ -151,6 +151,19 @@ def test_of_two_claimed_causes_both_keep_their_probability() -> None:
     labels = ("friction", "motor"), ("friction", "load")
     given = finding("effect", *labels, tied=(("friction", "gear.flexspline"),), ranking={**dict.fromkeys(labels, 0.8), ("none", ""): 0.2})
     assert [item["probability"] for item in answer_of("drive-c01", given, DRIVE)["effects"]] == [0.8, 0.8]
+
+
+def test_the_odds_of_a_name_are_those_of_our_sets_and_of_the_library() -> None:
+    """Causes with a name over those without, over labels likewise; within a quarter: it is one number for both benches."""
+    own = Path(run.__file__).parent / "own"
+    for bench, module in (("drive", drive_bench), ("rotor", rotor_bench)):
+        truths = [case["truth"] for path in own.glob(f"{bench}*/truths.json") for case in json.loads(path.read_text("utf-8")).values()]
+        causes = [cause["effect"] != "unknown" for truth in truths for cause in truth]
+        known = module.bench()
+        labels = {item.label for item in candidates(known.scene)} | {("parameter", group) for group in known.groups}
+        named = [names_of(bench).name(label) is not None for label in labels]
+        odds = (sum(causes) / causes.count(False)) * (named.count(False) / sum(named))
+        assert NAMED / 1.25 < odds < NAMED * 1.25, (bench, odds)
 
 
 @pytest.mark.parametrize(("shares_of", "said"), [((0.6, 0.2), "effect"), ((0.2, 0.6), "unknown")])
