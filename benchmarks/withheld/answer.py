@@ -14,8 +14,8 @@ WORDS = ("none", "unknown")
 """Entries of a ranking that are no causes."""
 TINY = 1e-300
 NAMED = 8.0
-"""Odds of a label with a name over one without, before any record is seen.  Of the causes of our own sets up to the ninth rotor set 167 of 190
-(drive) and 108 of 126 (rotor) have a name, which 38 of 87 and 55 of 118 labels share: 9.4 and 6.9."""
+"""Odds of a label with a name over one without, before any record is seen.  Of the causes of our own sets up to the ninth rotor set
+167 of 190 (drive) and 108 of 126 (rotor) have a name, which 38 of 87 and 55 of 118 labels share: 9.4 and 6.9."""
 
 
 def answer_of(case: str, finding: Finding, names: Names) -> dict[str, Any]:
