@@ -80,8 +80,8 @@ class CaseDiagnosis:
         if content_hash(files) != point["sha256"]:
             raise FileFormatError(f"{point['records']}: the records differ on this machine from the caller's, or have changed since.")
         own = [item.opened() for item in self.effects]
-        kinds = tried(own, self.only)
         bench = open_bench(self.bench.opened(), own) if isinstance(self.bench, GivenFile) else self.bench
+        kinds = tried(own, self.only)  # once the bench's file is read, whose own effects count too
         measured = measured_in(files, self.reading, bench)
         from hdrive_mbs.diagnosis.diagnose import diagnose as run
 

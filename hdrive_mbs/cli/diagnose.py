@@ -54,8 +54,8 @@ def diagnose(
     json: JsonFile = None,
 ) -> None:
     """Say where the gap between simulation and records lies, which effect causes it, and how far it shrinks once that is added."""
-    kinds = tried(effects or (), only or ())
     chosen = open_bench(scene, effects or ())
+    kinds = tried(effects or (), only or ())  # once the bench's file is read, whose own effects count too
     reading = reading_of(channel, unit, time, repair)
     paths = [*records, *(more or ())]
     measured = measured_in(paths, reading, chosen)
@@ -110,7 +110,7 @@ def open_bench(path: Path, own: Sequence[Path] = ()) -> Bench | Scene:
 
 
 def tried(files: Sequence[Path], only: Sequence[str] = ()) -> list[type[Effect]] | None:
-    """The library and the effects of these files, which may hold laws and parts too; None for the library alone.
+    """The library, the effects of these files, which may hold laws and parts too, and what has been imported; None for all that is known.
 
     only : classes or families that are tried, all if empty;  raises PlaceError for one that there is not
     """

@@ -55,8 +55,8 @@ def diagnose_all(
     from hdrive_mbs.diagnosis.digest import program
     from hdrive_mbs.records.reading import record_files
 
-    tried(effects or (), only or ())  # says now what would fail in every case
     opened = open_bench(scene, effects or ())
+    tried(effects or (), only or ())  # says now what would fail in every case
     reading = reading_of(channel, unit, time, repair)
     cases = cases_in([*records, *(more or ())])
     folder = out or Path("results") / re.sub(r"\W+", "_", f"diagnoses {scene.stem}")

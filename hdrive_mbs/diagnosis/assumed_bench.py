@@ -16,7 +16,7 @@ from hdrive_mbs.scene import Scene
 FloatArray = npt.NDArray[np.float64]
 
 TOLERANCES: dict[str, float] = {"kg m^2": 0.05, "kg": 0.02, "N m/rad": 0.1, "N/m": 0.1, "N m s/rad": 0.3, "N s/m": 0.3, "Pa": 0.03}
-"""Unit of a field -> assumed standard deviation of its logarithm: inertias and stiffnesses from data sheets, dampings by experience."""
+"""Unit of a field -> assumed relative standard deviation: inertias and stiffnesses from data sheets, dampings by experience."""
 
 
 def assumed_bench(scene: Scene, records: Sequence[Record]) -> Bench:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from hdrive_mbs.diagnosis.readable import digits, interval, listed, named, percent, probability, with_unit
 from hdrive_mbs.diagnosis.result import NOWHERE, VERDICTS, Cause, Diagnosis, DomainBin, Estimate, Place, Separation
+from hdrive_mbs.diagnosis.unknowns import Factor
 
 SEPARABLE = 25.0
 """Detectability from which two causes can be told apart."""
@@ -33,8 +34,8 @@ LIKELY, UNLIKELY = 0.5, 0.1
 FAR = 3.0
 """Standard deviations of its tolerance beyond which a parameter that is not claimed is told beside the verdict."""
 SIGMA = (
-    "sigma: the tolerance given for a parameter, a standard deviation of its logarithm;"
-    " a value known to 10 % that halves has moved by ln(0.5)/0.1 = -6.9 sigma"
+    "sigma: the tolerance given for a parameter, a relative standard deviation;"
+    " a value known to 10 % that halves has moved by (0.5 - 1)/0.1 = -5 sigma"
 )
 MOVED = 1.0
 """Standard deviations of its tolerance from which a parameter is said to have moved."""
@@ -197,12 +198,11 @@ def explaining(place: Place) -> str:
 
 
 def moved(estimate: Estimate) -> float:
-    """How far a nominal parameter went, in standard deviations of its tolerance; nan where it has none."""
+    """How far a nominal parameter went, in standard deviations of its tolerance as the fits count them; nan where it has none."""
     before, after, sigma = estimate.nominal, estimate.value, estimate.tolerance
     if not (math.isfinite(before) and math.isfinite(after) and sigma > 0.0 and before != 0.0):
         return math.nan
-    ratio = after / before
-    return math.log(ratio) / sigma if ratio > 0.0 else (ratio - 1.0) / sigma
+    return Factor.deviations(after / before, sigma) if after / before > 0.0 else math.nan
 
 
 def moved_parameters(diagnosis: Diagnosis) -> list[tuple[Estimate, float]]:

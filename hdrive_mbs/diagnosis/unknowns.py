@@ -112,6 +112,12 @@ class Factor(Unknown):
         straight = 1.0 + self.sigma * self.wide * z
         return straight if straight >= STRAIGHT else STRAIGHT * math.exp((straight - STRAIGHT) / STRAIGHT)
 
+    @staticmethod
+    def deviations(ratio: float, sigma: float) -> float:
+        """Standard deviations z that p/p0 is off, the other way round; ``ratio`` above 0, ``sigma`` that of a prior that is not widened."""
+        straight = ratio if ratio >= STRAIGHT else STRAIGHT * (1.0 + math.log(ratio / STRAIGHT))
+        return (straight - 1.0) / sigma
+
     def log_prior(self, z: Sequence[float]) -> float:
         return _normal(z)
 

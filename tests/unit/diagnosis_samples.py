@@ -135,7 +135,7 @@ def parameters() -> tuple[Estimate, ...]:
         path = drive_bench.PATHS[name][0]
         free = drive_bench.build().parameters()[path]
         sigma = drive_bench.KNOWLEDGE[name]
-        now = value * math.exp(sigma * (2.4, -1.3, 0.2, 0.6)[k % 4])
+        now = value * (1.0 + sigma * (2.4, -1.3, 0.2, 0.6)[k % 4])
         spread = math.exp(0.3 * sigma)
         found.append(
             Estimate(

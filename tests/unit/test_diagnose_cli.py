@@ -238,6 +238,15 @@ def test_only_some_effects_are_tried_by_class_or_family(asked: list[dict[str, An
         invoke(scene, "--records", file, "--only", "MeshFrction", "--out", str(tmp_path / "out"))
 
 
+def test_effects_of_the_bench_s_own_file_count_beside_other_files_and_can_be_chosen(asked: list[dict[str, Any]], tmp_path: Path) -> None:
+    scene, file = written(tmp_path, SEAL_DRAG.replace("SealDrag", "RingDrag") + BENCH), record(tmp_path, "a.csv")
+    assert invoke(scene, "--records", file, "--only", "RingDrag", "--out", str(tmp_path / "out")).exit_code == 0
+    assert [kind.__name__ for kind in asked[0]["candidates"]] == ["RingDrag"]
+    other = written(tmp_path, SEAL_DRAG.replace("SealDrag", "LipDrag"), "lip")
+    assert invoke(scene, "--records", file, "--effects", other, "--out", str(tmp_path / "out_2")).exit_code == 0
+    assert {"LipDrag", "RingDrag", "MeshFriction"} <= {kind.__name__ for kind in asked[1]["candidates"]}
+
+
 def test_other_processes_can_read_an_effect_of_an_own_file(path: list[str], tmp_path: Path) -> None:
     kind = own_types(Path(written(tmp_path, SEAL_DRAG, "sent")))[0]
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
