@@ -14,6 +14,7 @@ from hdrive_mbs.diagnosis import readable, sentences
 from hdrive_mbs.diagnosis.report_json import VERSION, read_report_json, report_document, write_report_json
 from hdrive_mbs.diagnosis.report_text import report_text, write_report
 from hdrive_mbs.diagnosis.result import NOWHERE, Diagnosis, DomainBin, Estimate, Place
+from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import FileFormatError
 from hdrive_mbs.scene_file import scene_from_dict
 from tests.unit import diagnosis_samples
@@ -200,6 +201,13 @@ def test_parameters_are_told_in_sigmas_of_their_tolerance_the_furthest_first() -
     assert [round(abs(z), 6) for _, z in moved] == sorted((round(abs(z), 6) for _, z in moved), reverse=True)
     assert all(abs(z) > 1.0 for _, z in moved)
     assert len(moved) == 8  # of 14, every first and second of four moves by 2.4 and -1.3 sigma
+
+
+@pytest.mark.parametrize("z", [-12.0, -6.01, -5.99, -1.0, 0.0, 4.0])
+def test_sigmas_that_are_told_are_those_that_the_fits_count(z: float) -> None:
+    """Also far below the value, where the prior goes over to its logarithm: at 10 % from 6 of them on."""
+    factor = Factor(path="motor.inertia", name="inertia", nominal={"motor.inertia": 2.0}, sigma=0.1)
+    assert Factor.deviations(factor.values([z])["motor.inertia"] / 2.0, 0.1) == pytest.approx(z, abs=1e-12)
 
 
 def test_every_nominal_parameter_has_its_value_before_and_after() -> None:
