@@ -121,6 +121,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.dahl_friction": ("DahlFriction",),
     "effects.dahl_hysteresis": ("DahlHysteresis",),
     "effects.encoder_eccentricity": ("EncoderEccentricity",),
+    "effects.fading_cross_coupling": ("FadingCrossCoupling",),
     "effects.film_backlash": ("FilmBacklash",),
     "effects.flexible_inertia": ("FlexibleInertia",),
     "effects.harmonic_kinematic_error": ("HarmonicKinematicError",),

@@ -130,6 +130,7 @@ from hdrive_mbs.effects.effect import TwistEffect as TwistEffect
 from hdrive_mbs.effects.encoder_eccentricity import EncoderEccentricity as EncoderEccentricity
 from hdrive_mbs.effects.external_shock import ExternalShock as ExternalShock
 from hdrive_mbs.effects.external_torque import ExternalTorque as ExternalTorque
+from hdrive_mbs.effects.fading_cross_coupling import FadingCrossCoupling as FadingCrossCoupling
 from hdrive_mbs.effects.film_backlash import FilmBacklash as FilmBacklash
 from hdrive_mbs.effects.flexible_inertia import FlexibleInertia as FlexibleInertia
 from hdrive_mbs.effects.friction_by_angle import FrictionByAngle as FrictionByAngle

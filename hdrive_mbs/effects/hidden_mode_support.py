@@ -33,7 +33,14 @@ class HiddenModeSupport(Effect):
     natural_frequency: float = parameter("rad/s", "f_1, along the first spring with the housing held", above=0.0, typical=(100.0, 1500.0))
     ratio: float = parameter("1", "f_2/f_1", default=1.0, above=0.0, high=20.0, typical=(0.5, 2.0))
     damping_ratio: float = parameter("1", "z", default=0.02, low=0.0, high=2.0, typical=(0.002, 0.1))
-    angle: float = parameter("rad", "direction of the first spring from x towards y", default=0.0, low=-math.pi, high=math.pi)
+    angle: float = parameter(
+        "rad",
+        "direction of the first spring from x towards y",
+        default=0.0,
+        low=-math.pi,
+        high=math.pi,
+        typical=(-0.5 * math.pi, 0.5 * math.pi),
+    )
 
     acts_on: ClassVar[str] = "support"
     kind: ClassVar[str] = "hidden state"
@@ -43,6 +50,7 @@ class HiddenModeSupport(Effect):
     )
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"natural_frequency": (200.0, 400.0, 600.0, 800.0)}
     decisive: ClassVar[tuple[str, ...]] = ("natural_frequency",)
+    half_turn: ClassVar[frozenset[str]] = frozenset({"angle"})
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         support = draft.support(place, "HiddenModeSupport")

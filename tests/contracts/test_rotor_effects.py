@@ -66,6 +66,7 @@ EXAMPLES = {
         Example(hm.BearingCubicStiffness(stiffness=1e13), "right", ("stiffness",)),
         Example(hm.BearingHardening(rate=1e4), "left", ("rate",)),
         Example(hm.BearingCrossCoupling(stiffness=5e4, exponent=1.5, reference_speed=50.0, fading=1e6), "left", ("stiffness",)),
+        Example(hm.FadingCrossCoupling(stiffness=5e4, asymmetry=0.2, fading=1e6), "left", ("stiffness",)),
         Example(hm.BearingAnisotropy(asymmetry=0.3, angle=0.4), "right", ("asymmetry",)),
         Example(hm.BearingStiffnessChange(change=0.3), "left", ("change",)),
         Example(hm.BearingDampingChange(change=0.8), "left", ("change",)),

@@ -226,6 +226,7 @@ def test_no_second_cause_is_claimed_beside_one_that_leaves_noise(simulator: Simu
     ("null", "leaves", "kind"),
     [
         (1.022, 1.013, "unknown"),  # two fifths of a faint gap: a part of what something else does
+        (1.0104, 1.0071, "effect"),  # half of what stands above what noise may leave
         (1.022, 1.009, "effect"),
         (1.0075, 1.0039, "effect"),  # what is left may be noise
         (1.14, 1.10, "effect"),  # not faint: a law may be far from right

@@ -190,6 +190,7 @@ ROTOR_EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.BearingCubicStiffness(stiffness=1e14, by_axis=True), "bearing"),
     (hm.BearingHardening(rate=1e4), "bearing"),
     (hm.BearingCrossCoupling(stiffness=1e5, exponent=1.0), "bearing"),
+    (hm.FadingCrossCoupling(stiffness=1e5, asymmetry=-0.2, fading=1e8), "bearing"),
     (hm.BearingAnisotropy(asymmetry=0.1, angle=0.3), "bearing"),
     (hm.BearingStiffnessChange(change=0.1), "bearing"),
     (hm.BearingDampingChange(change=0.1), "bearing"),

@@ -44,7 +44,7 @@ CASES: dict[str, tuple[str, int, tuple[float, ...], Effect, str]] = {
     "cubic": ("bearing", 6, (3, 2e-5), hm.BearingCubicStiffness(stiffness=STIFFNESS / 4e-10), "bearing_2"),
     "cubic by axis": ("bearing", 6, (4, 2e-5), hm.BearingCubicStiffness(stiffness=STIFFNESS / 4e-10, by_axis=True), "bearing_2"),
     "sinh": ("bearing", 6, (5, 2e-5), hm.BearingHardening(rate=5e4), "bearing_2"),
-    "cross": ("cross", 0, (1, 5e6, 0.2, 1e-4), hm.BearingCrossCoupling(stiffness=5e6, asymmetry=0.2, fading=1e8), "bearing_1"),
+    "cross": ("cross", 0, (1, 5e6, 0.2, 1e-4), hm.FadingCrossCoupling(stiffness=5e6, asymmetry=0.2, fading=1e8), "bearing_1"),
     "lifts": ("support", 0, (1, -8e-6, 0.0, 0.5), hm.Looseness(share=0.5, lift_off=-8e-6), "bearing_1"),
     "lifts to the bolt": ("support", 0, (3, -8e-6, -2e-6, 0.5), hm.Looseness(share=0.5, lift_off=-8e-6, play=6e-6), "bearing_1"),
     "sideways": ("support", 0, (2, 0.0, 2e-6, 0.5), hm.LooseFit(share=0.5, half_play=2e-6), "bearing_1"),
