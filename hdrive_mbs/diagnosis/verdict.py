@@ -34,10 +34,10 @@ FITS = 1.6
 """Mean square below which a claim stands whatever its share."""
 FAINT, NOISE = 1.05, 1.004
 """Mean square of the refitted nominal model up to which a gap is faint, and up to which what is left of one may be noise (the nulls of our
-own open sets leave 0.995 to 1.0045).  Of a faint gap an effect has to take EXPLAINED too, of what stands above NOISE, or else another cause is
-there, of which it takes a part: a law that is nearly right leaves some per cent of what it stands for.  It rests on two such cases: c14 of our
-own second drive set, c06 of an open one; that noise itself may stand above 1 on one more, a crack in our own tenth rotor set (c14, labels open: it
-took 1.0104 to 1.0072, and the right cause with every law leaves the same)."""
+own open sets leave 0.995 to 1.0045).  Of a faint gap an effect has to take EXPLAINED too, of what stands above NOISE, or else another cause
+is there, of which it takes a part: a law that is nearly right leaves some per cent of what it stands for.  It rests on two such cases: c14
+of our own second drive set, c06 of an open one; that noise itself may stand above 1 on one more, a crack of our own tenth rotor set (c14,
+labels open): it took 1.0104 to 1.0072, and the right cause with every law leaves the same."""
 TIED = 5.0
 """Difference of log odds within which two labels cannot be told apart."""
 PLAIN = 0.998
