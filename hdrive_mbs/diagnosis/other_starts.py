@@ -2,7 +2,8 @@
 
 A crack that the bending moment shuts is open by half whatever its side where the moment over which it shuts is large, so from the wrong
 side a fit ends there.  In our own seventh rotor set (c06, labels open) such a fit left 20; turned by half a turn, with all else as it
-was, two steps led to 3.3 and eight to 1.17.
+was, two steps led to 3.3 and eight to 1.17.  The second resonance of a mass that hangs on a support is found from near it alone
+(tenth rotor set, c02).
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ MOST = 7
 def from_other_starts(
     found: Sequence[Found], everything: Sequence[Suspect], done: Collection[tuple[Label, str]] = ()
 ) -> list[tuple[Suspect, Task]]:
-    """Laws of the best label with other start values in their decisive fields and what was found for all else, for their first steps.
+    """Laws of the best label with other start values in what may hold them in a hollow, and what was found for all else: first steps.
 
     found : fitted laws, best first;  done : laws at places that this was asked of before
     """
@@ -48,23 +49,32 @@ def from_other_starts(
 
 
 def others(effect: Effect, starts: Sequence[Effect]) -> list[Effect]:
-    """An effect with each combination of the start values of its decisive fields but the one that it is nearest to, nearest first.
+    """An effect with other values in its decisive fields and in those of its hollows, one or several of them, nearest first.
 
-    Those that are not allowed and all beyond the first few are left out.
+    Each of these fields keeps what it has or takes one of its values but the nearest.  What is not allowed and all beyond the
+    first few are left out.
 
     starts : of its search, which are thinned out: where the law itself names values, all of these count
     """
     kind, shapes = type(effect), searched_fields(type(effect))
-    names = [name for name in kind.decisive if name in shapes]
-    values = [kind.starts.get(name) or tuple(dict.fromkeys(getattr(start, name) for start in starts)) for name in names]
+    names = [name for name in (*kind.decisive, *kind.hollows) if name in shapes]
 
-    def apart(some: tuple[float, ...]) -> float:
-        return math.hypot(*(_apart(effect, name, value, shapes[name].unit) for name, value in zip(names, some, strict=True)))
+    def apart(name: str, value: float) -> float:
+        return _apart(effect, name, value, shapes[name].unit)
 
+    ways: list[list[tuple[float, dict[str, float]]]] = []
+    for name in names:
+        values = kind.hollows.get(name) or kind.starts.get(name) or tuple(dict.fromkeys(getattr(start, name) for start in starts))
+        other = sorted(values, key=lambda value, name=name: apart(name, value))[1:]  # type: ignore[misc]
+        ways.append([(0.0, {}), *((apart(name, value), {name: value}) for value in other)])
+    steps = [
+        (math.hypot(*(far for far, _ in some)), {k: v for _, values in some for k, v in values.items()})
+        for some in itertools.product(*ways)
+    ]
     made = []
-    for some in sorted(itertools.product(*values), key=apart)[1 : MOST + 1]:
+    for _, values in sorted(steps, key=lambda step: step[0])[1 : MOST + 1]:
         try:
-            made.append(effect.replacing(**dict(zip(names, some, strict=True))))
+            made.append(effect.replacing(**values))
         except ParameterError:
             continue
     return made

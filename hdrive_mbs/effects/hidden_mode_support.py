@@ -50,6 +50,7 @@ class HiddenModeSupport(Effect):
     )
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"natural_frequency": (200.0, 400.0, 600.0, 800.0)}
     decisive: ClassVar[tuple[str, ...]] = ("natural_frequency",)
+    hollows: ClassVar[Mapping[str, tuple[float, ...]]] = {"ratio": (0.5, 0.63, 0.8, 1.25, 1.6, 2.0)}
     half_turn: ClassVar[frozenset[str]] = frozenset({"angle"})
 
     def apply(self, draft: Draft, place: str, name: str) -> None:

@@ -74,10 +74,19 @@ def test_what_says_the_same_after_half_a_turn_is_not_begun_there(turning: Effect
     assert sorted(begun_at) == sorted({-0.78, 0.0, 0.78, 1.57} - {nearest})
 
 
-def test_two_decisive_fields_begin_at_all_combinations_but_one() -> None:
+def test_two_decisive_fields_begin_at_all_combinations_but_one_and_keep_what_they_have_where_they_do_not_change() -> None:
     crack = hm.PhasedCrack(compliance=1e-7, position=0.5, angle=1.4, phase=-1.4)
     turned = {(item.angle, item.phase) for item in others(crack, [crack]) if isinstance(item, hm.PhasedCrack)}
-    assert turned == {(a, p) for a in (0.0, 1.57) for p in (0.0, 1.57, 3.14, -1.57)} - {(1.57, -1.57)}
+    assert turned == {(a, p) for a in (0.0, 1.4) for p in (0.0, 1.57, 3.14, -1.4)} - {(1.4, -1.4)}
+
+
+def test_a_second_resonance_begins_at_others_beside_the_first_as_it_was_found() -> None:
+    """A pipe at 0.65 of its first frequency ended below 0.36 of it (our own tenth rotor set, c02)."""
+    pipe = hm.HiddenModeSupport(mass=1.6, natural_frequency=747.0, ratio=0.36, damping_ratio=0.02, angle=-0.33)
+    begun_at = [(item.natural_frequency, item.ratio) for item in others(pipe, [pipe]) if isinstance(item, hm.HiddenModeSupport)]
+    assert begun_at[0] == (600.0, 0.36)
+    assert {(747.0, 0.63), (747.0, 0.8)} <= set(begun_at)
+    assert len(begun_at) == MOST
 
 
 def test_a_frequency_begins_at_the_nearest_others_by_their_logarithm() -> None:
