@@ -57,27 +57,24 @@ def others(effect: Effect, starts: Sequence[Effect]) -> list[Effect]:
     starts : of its search, which are thinned out: where the law itself names values, all of these count
     """
     kind, shapes = type(effect), searched_fields(type(effect))
-    names = [name for name in (*kind.decisive, *kind.hollows) if name in shapes]
-
-    def apart(name: str, value: float) -> float:
-        return _apart(effect, name, value, shapes[name].unit)
-
-    ways: list[list[tuple[float, dict[str, float]]]] = []
-    for name in names:
+    ways = []
+    for name in [name for name in (*kind.decisive, *kind.hollows) if name in shapes]:
         values = kind.hollows.get(name) or kind.starts.get(name) or tuple(dict.fromkeys(getattr(start, name) for start in starts))
-        other = sorted(values, key=lambda value, name=name: apart(name, value))[1:]  # type: ignore[misc]
-        ways.append([(0.0, {}), *((apart(name, value), {name: value}) for value in other)])
-    steps = [
-        (math.hypot(*(far for far, _ in some)), {k: v for _, values in some for k, v in values.items()})
-        for some in itertools.product(*ways)
-    ]
+        there = sorted((_apart(effect, name, value, shapes[name].unit), value) for value in values)
+        ways.append([(0.0, {}), *((far, {name: value}) for far, value in there[1:])])
+    combined = [_together(some) for some in itertools.product(*ways)]
     made = []
-    for _, values in sorted(steps, key=lambda step: step[0])[1 : MOST + 1]:
+    for _, changes in sorted(combined, key=lambda item: item[0])[1 : MOST + 1]:
         try:
-            made.append(effect.replacing(**values))
+            made.append(effect.replacing(**changes))
         except ParameterError:
             continue
     return made
+
+
+def _together(steps: Sequence[tuple[float, dict[str, float]]]) -> tuple[float, dict[str, float]]:
+    """How far steps lead together, and what they change."""
+    return math.hypot(*(far for far, _ in steps)), {name: value for _, changes in steps for name, value in changes.items()}
 
 
 def _apart(effect: Effect, name: str, value: float, unit: str) -> float:
