@@ -40,6 +40,7 @@ def nominal_estimates(fitted: Fitted, scene: Scene) -> tuple[Estimate, ...]:
                 nominal=nominal,
                 tolerance=factor.sigma,
                 identifiable=error < LEARNED,
+                at_end=factor.at_end([z]),
             )
         )
     return tuple(found)
@@ -80,6 +81,7 @@ def effect_estimates(fitted: Fitted, improved: Scene, name: str) -> tuple[Estima
                     low=max(low, free.low) if math.isfinite(free.low) else low,
                     high=min(high, free.high) if math.isfinite(free.high) else high,
                     identifiable=sure,
+                    at_end=unknown.at_end(z.tolist()) and path == unknown.path,
                 )
             )
     return _without_idle(found, improved, name)

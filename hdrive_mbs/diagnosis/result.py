@@ -37,6 +37,8 @@ class Estimate:
     name : path in the improved scene;  unit, doc : of its field
     value, low, high : with its 95 % interval;  nominal, tolerance : value and relative standard deviation it had before,
     nan for the parameters of an effect;  identifiable : whether the records say more of it than was known before
+    at_end : whether the fit stopped at an end of what it may take, which the records may want it to pass: a law that is not quite the right
+        one, or a fit in a hollow
     """
 
     name: str
@@ -48,6 +50,7 @@ class Estimate:
     nominal: float = float("nan")
     tolerance: float = float("nan")
     identifiable: bool = True
+    at_end: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

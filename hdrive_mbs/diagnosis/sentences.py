@@ -290,7 +290,8 @@ def estimate_text(estimate: Estimate) -> str:
     """Value with interval, or why there is none."""
     if not estimate.identifiable:
         return f"not identifiable from these records (best {with_unit(estimate.value, estimate.unit, 2)})"
-    return interval(estimate.value, estimate.low, estimate.high, estimate.unit)
+    found = interval(estimate.value, estimate.low, estimate.high, estimate.unit)
+    return f"{found}, the end of what a fit may take" if estimate.at_end else found
 
 
 def law_line(cause: Cause) -> str:

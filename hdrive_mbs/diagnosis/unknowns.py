@@ -63,6 +63,11 @@ class Unknown(ABC):
         """The nearest allowed coordinates."""
         return tuple(z)
 
+    def at_end(self, z: Sequence[float]) -> bool:
+        """Whether a coordinate lies at an end of what is allowed, beyond which the records may want it; the zero of a size is none."""
+        beyond = [value + math.copysign(1e-6, value) for value in z]
+        return math.hypot(*self.clipped(beyond)) <= math.hypot(*z) + 1e-9 < math.hypot(*beyond)
+
     def curvature(self, z: Sequence[float]) -> float:
         """Of the prior, at least: what keeps a coordinate that the records do not determine from adding evidence."""
         return self.precision

@@ -14,7 +14,7 @@ from hdrive_mbs.diagnosis import readable, sentences
 from hdrive_mbs.diagnosis.report_json import VERSION, read_report_json, report_document, write_report_json
 from hdrive_mbs.diagnosis.report_text import report_text, write_report
 from hdrive_mbs.diagnosis.result import NOWHERE, Diagnosis, DomainBin, Estimate, Place
-from hdrive_mbs.diagnosis.unknowns import Factor
+from hdrive_mbs.diagnosis.unknowns import Factor, Shape, Signed, Strength, Unknown, Vector
 from hdrive_mbs.errors import FileFormatError
 from hdrive_mbs.scene_file import scene_from_dict
 from tests.unit import diagnosis_samples
@@ -208,6 +208,33 @@ def test_sigmas_that_are_told_are_those_that_the_fits_count(z: float) -> None:
     """Also far below the value, where the prior goes over to its logarithm: at 10 % from 6 of them on."""
     factor = Factor(path="motor.inertia", name="inertia", nominal={"motor.inertia": 2.0}, sigma=0.1)
     assert Factor.deviations(factor.values([z])["motor.inertia"] / 2.0, 0.1) == pytest.approx(z, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("unknown", "ends", "within"),
+    [
+        (Shape("ratio", 0.5, 2.0), [[-3.0], [3.0]], [[-2.9], [0.0], [2.9]]),
+        (Factor(path="m", name="m", nominal={"m": 1.0}, sigma=0.05), [[-5.0], [5.0]], [[-4.9], [0.0]]),
+        (Strength("size", 0.1, 10.0, 1.0), [[40.0]], [[0.0], [39.0]]),  # a size may well be zero
+        (Signed("side", 1.0, -0.9, 0.9), [[-1.764], [1.764]], [[-1.7], [0.0], [1.7]]),
+        (Vector("size", "phase", 0.1, 10.0, 1.0), [[40.0, 0.0], [-24.0, 32.0]], [[0.0, 0.0], [24.0, 31.0]]),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_a_fit_that_stops_at_an_end_is_known(unknown: Unknown, ends: list[list[float]], within: list[list[float]]) -> None:
+    assert all(unknown.at_end(z) for z in ends)
+    assert not any(unknown.at_end(z) for z in within)
+
+
+def test_a_value_at_an_end_is_told_as_one() -> None:
+    """A ratio of 0.3536 was an interval like any other, where a fit had ended in a hollow (our own tenth rotor set, c02)."""
+    answer = SAMPLES["effect"]()
+    [cause] = answer.causes
+    first, *rest = cause.parameters
+    told = dataclasses.replace(answer, causes=(dataclasses.replace(cause, parameters=(dataclasses.replace(first, at_end=True), *rest)),))
+    assert "the end of what a fit may take" not in report_text(answer)
+    assert "the end of what a fit may take" in " ".join(report_text(told).split())
+    assert report_document(told)["causes"][0]["parameters"][0]["at_end"] is True
 
 
 def test_every_nominal_parameter_has_its_value_before_and_after() -> None:
