@@ -46,6 +46,15 @@ def waits_for_company(point: dict[str, Any]) -> dict[str, Any]:
     return double
 
 
+def held(point: dict[str, Any]) -> dict[str, Any]:
+    """A job from number 8 on is not finished before the file "go" is there."""
+    double = logged(point)
+    end = time.monotonic() + 10.0
+    while point["x"] >= 8 and not Path(point["go"]).exists() and time.monotonic() < end:
+        time.sleep(0.01)
+    return double
+
+
 def killed_once(point: dict[str, Any]) -> float:
     """Job 2 ends its own process the first time, as the out-of-memory killer would."""
     if point["x"] == 2 and not Path(point["marker"]).exists():

@@ -105,12 +105,12 @@ def test_a_worker_that_is_killed_from_outside_costs_nothing_but_time(cluster: st
 INTERRUPTED = """
 import signal, sys
 import hdrive_mbs as hm
-from tests.unit.campaign_jobs import logged
+from tests.unit.campaign_jobs import held
 
 if __name__ == "__main__":
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    points = [{"x": x, "log": sys.argv[1], "seconds": 0.1} for x in range(20)]
-    print(hm.sweep(logged, points, executor=sys.argv[3], folder=sys.argv[2]).status)
+    points = [{"x": x, "log": sys.argv[1], "go": sys.argv[4], "seconds": 0.1} for x in range(20)]
+    print(hm.sweep(held, points, executor=sys.argv[3], folder=sys.argv[2]).status)
 """
 
 
@@ -118,9 +118,9 @@ if __name__ == "__main__":
 def test_a_campaign_on_the_cluster_that_was_interrupted_goes_on_from_what_is_finished(
     cluster: str, tmp_path: Path, how: signal.Signals
 ) -> None:
-    script, log, folder = tmp_path / "script.py", tmp_path / "log", tmp_path / "campaign"
+    script, log, folder, go = tmp_path / "script.py", tmp_path / "log", tmp_path / "campaign", tmp_path / "go"
     script.write_text(INTERRUPTED)
-    command = [sys.executable, str(script), str(log), str(folder), cluster]
+    command = [sys.executable, str(script), str(log), str(folder), cluster, str(go)]
     caller = subprocess.Popen(
         command, env={**os.environ, "PYTHONPATH": str(ROOT)}, stdout=subprocess.PIPE, text=True, start_new_session=True
     )
@@ -129,14 +129,15 @@ def test_a_campaign_on_the_cluster_that_was_interrupted_goes_on_from_what_is_fin
         time.sleep(0.02)
     caller.send_signal(how)
     output, _ = caller.communicate(timeout=20)
+    go.touch()
     finished = len(list(folder.glob("jobs/*.npz")))
     assert 4 <= finished < 20
     if how == signal.SIGINT:
         assert output == f"stopped with {finished} of 20 jobs done; the same call with the same folder goes on from there\n"
-    same = [{"x": x, "log": str(log), "seconds": 0.1} for x in range(20)]
-    kept = {x for x in range(20) if (folder / "jobs" / f"{job_key(fingerprint(jobs.logged), same[x])}.npz").exists()}
+    same = [{"x": x, "log": str(log), "go": str(go), "seconds": 0.1} for x in range(20)]
+    kept = {x for x in range(20) if (folder / "jobs" / f"{job_key(fingerprint(jobs.held), same[x])}.npz").exists()}
     before = log_lines(log)
-    campaign = hm.sweep(jobs.logged, same, executor=cluster, folder=folder)
+    campaign = hm.sweep(jobs.held, same, executor=cluster, folder=folder)
     assert campaign.status == "complete"
     assert campaign.reused == finished == len(kept)
     assert list(campaign["double"]) == [2.0 * x for x in range(20)]
