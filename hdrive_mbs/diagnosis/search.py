@@ -10,7 +10,7 @@ import numpy as np
 
 from hdrive_mbs.diagnosis.beginnings import begun_at, beside, widths_of
 from hdrive_mbs.diagnosis.candidates import Candidate
-from hdrive_mbs.diagnosis.choosing import beyond, enough, leaves, passed_over, picked, spread_out, worth
+from hdrive_mbs.diagnosis.choosing import SEEN, beyond, enough, leaves, passed_over, picked, spread_out, worth
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.force_orders import StandsOut
 from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, restarts, unfinished
@@ -110,10 +110,10 @@ def search(
 ) -> Search:
     """Look at everything that may be missing from a fitted model, and fit the best together with its parameters.
 
-    Where the base is far from the records, parameters are tried all along their range first (scans.py).
     One simple law stands for each label in the first look.  The best labels are looked at with all laws and starts,
-    the best of those get a few joint steps with their own Jacobians, and the best of these are fitted to the end.  Where they
-    leave something, the places of their families that were passed over are fitted too.
+    the best of those get a few joint steps with their own Jacobians, and the best of these are fitted to the end.  Where the base
+    is far from the records and the best leaves something, parameters are tried all along their range too (scans.py).
+    Where they leave something, the places of their families that were passed over are fitted too.
     Where these leave something, the other laws of the best label are tried from its values, and all of them begin again from other
     values of what decides whether they show (other_starts.py).
     Where all of them leave something, the same is done with the likeliest, the parameters held near the values of the data sheet.
@@ -126,8 +126,9 @@ def search(
     how = depth or Depth()
     work = _Work(team, simulator, report or (lambda stage, done, total: None), how, begin)
     everything = suspects(base.hypothesis, groups, tried)
-    known = work.scanned(everything) if how.laws > 1 and base.chi_fit > NEAR else []
-    found, first = work.from_grounds(base, everything) if how.laws == 1 else work.from_ground(base, base, everything, known)
+    found, first = (
+        work.from_grounds(base, everything) if how.laws == 1 else work.from_ground(base, base, everything, far=base.chi_fit > NEAR)
+    )
     found = work.other_ways(found, base, everything)
     looks = {f"{suspect.law} at {suspect.label[1]}": cost for suspect, cost in first}
     if how.laws > 1 and how.again and base.chi_fit > FAR and not any(item.fitted.typical < enough(base, ENOUGH) for item in found):
@@ -185,11 +186,11 @@ class _Work:
         return cheapest([*found, *more]), looks
 
     def from_ground(
-        self, model: Fitted, base: Fitted, everything: Sequence[Suspect], known: Sequence[Found] = ()
+        self, model: Fitted, base: Fitted, everything: Sequence[Suspect], *, far: bool = False
     ) -> tuple[list[Found], list[tuple[Suspect, float]]]:
         """What is found from a model at some point, and the cost of the first looks, both best first.
 
-        known : what is fitted already, which others are held against
+        far : whether a parameter may be so far off that looks do not see it, and is tried along its range where the best leaves something
         """
         screen = screen_from(self.simulator, model)
         everything = self._begun(everything, model)
@@ -207,9 +208,11 @@ class _Work:
             laws = [item for item in everything if item.label in chosen and item not in done]
             closer = by_cost([*whole, *self._looked(screen, laws, [item.all for item in laws], "looking closer")])
         best = picked(closer, laws=self.how.laws)[: self.how.picked]
-        leading = min((item.fitted.chi_fit for item in known), default=None)
-        tasks = [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE, leading=leading)) for suspect, look in best]
-        brief = cheapest([*known, *self.fitted(tasks, "a few joint steps")])
+        tasks = [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE)) for suspect, look in best]
+        brief = cheapest(self.fitted(tasks, "a few joint steps"))
+        scanning = far and (not brief or brief[0].fitted.typical > ENOUGH)
+        if scanning:
+            brief = cheapest([*brief, *self.scanned(everything)])
         kept = brief[: worth(base.cost, [item.fitted.cost for item in brief], self.how.kept)]
         thorough = [
             (k < self.how.serious or item.suspect.label == kept[0].suspect.label) and not beyond(item.fitted, kept[0].fitted)
@@ -217,6 +220,8 @@ class _Work:
         ]
         further_ = [further(item.fitted, *((CONVERGED, FINE, 1) if end else (STEPS,))) for item, end in zip(kept, thorough, strict=True)]
         found = cheapest(self.fitted([(item.suspect, task) for item, task in zip(kept, further_, strict=True)], "fitting the best"))
+        if far and not scanning and (not found or found[0].fitted.typical > SEEN):
+            found = cheapest([*found, *self.scanned(everything)])
         if found and leaves(found[0].fitted.typical, base, ENOUGH):
             found = cheapest([*found, *self._others(passed_over(found, first, chosen))])
         return found, [(suspect, look.cost) for suspect, look in first]
