@@ -147,7 +147,8 @@ def test_a_campaign_on_the_cluster_that_was_interrupted_goes_on_from_what_is_fin
     assert len(again & kept) <= 2
 
 
-def test_a_job_that_kills_its_workers_is_given_up_and_a_failing_one_reported(cluster: str) -> None:
+def test_a_job_that_kills_its_workers_is_given_up_and_a_failing_one_reported(cluster: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dask_cluster, "FETCH", 3.0)  # a result that went with its worker is waited for so long
     campaign = hm.sweep(jobs.always_killed, points(4), executor=cluster, retries=1)
     assert list(campaign.done) == [True, True, False, True]
     assert campaign.failures[0]["error"].startswith("The worker was lost 2 times (dask gave the job up")
