@@ -9,7 +9,8 @@ import numpy as np
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.run_up.rest_positions import FreeLine, rest_position
 from hdrive_mbs.analysis.signals.plane_signal import PlaneSignal, turning_place
-from hdrive_mbs.analysis.signals.shaft_angle import TURN, shaft_history
+from hdrive_mbs.analysis.signals.shaft_angle import TURN, shaft_history, slope_at
+from hdrive_mbs.analysis.signals.source import MeasuredChannels, Source, readable
 from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.analysis.whirl.rotor_places import rotor_masses, spin_ratios
 from hdrive_mbs.errors import AnalysisError, ParameterError, unknown_place
@@ -99,8 +100,8 @@ class Orbit(Result):
 
 
 def orbit(
-    response: Response,
-    place: str,
+    response: Source,
+    place: str | tuple[str, str],
     *,
     centre: str = "geometric",
     about: str = "axis",
@@ -108,16 +109,18 @@ def orbit(
     end: float | None = None,
     slowest: float | None = None,
     fastest: float | None = None,
-    reference: str | None = None,
+    reference: str | TimeHistory | None = None,
 ) -> Orbit:
     """Path of a place in x and y.
 
-    place : with channels x and y: a rotor, a bearing, ``bearing_a.housing``; also ``bearing_a.force`` [N]
+    response : also a measured record
+    place : with channels x and y: a rotor, a bearing, ``bearing_a.housing``; also ``bearing_a.force`` [N]; or two channels (x, y)
     centre : "geometric", or "mass" for the centre of mass of a rotor (self-centring: seed M, Fig. 7)
     about : count from the "axis", from the "static" deflection at the mean speed of the window, or from the "mean" of the path
     start, end : window in time [s]
     slowest, fastest : window in speed of the spin [rad/s, size]: from when it first enters to when it leaves the range
-    reference : place whose spin counts; the place itself, or the reference shaft for one that does not turn
+    reference : place, channel of the angle or history [rad] whose spin counts; the place itself, or the reference shaft for one that does
+        not turn
 
     Raises AnalysisError for an empty window.
     """
@@ -125,27 +128,30 @@ def orbit(
         raise ParameterError(f"centre = {centre!r}: must be one of {', '.join(CENTRES)}.")
     if about not in ORIGINS:
         raise ParameterError(f"about = {about!r}: must be one of {', '.join(ORIGINS)}.")
+    source = readable(response)
+    if isinstance(source, TimeHistory):
+        raise ParameterError("A single time history has no plane; an orbit needs a response or a record.")
     signal = PlaneSignal.of(response, place)
     if not signal.plane:
         raise ParameterError(f"{place!r} is one channel; an orbit needs a place that has x and y, like a rotor or a bearing.")
-    shaft = shaft_history(response, turning_place(response, place, reference))
-    spin = response[f"{shaft.name.removesuffix('.angle')}.speed"]
+    shaft = shaft_history(source, turning_place(source, signal.name, reference))
+    spin = _spin(source, shaft)
     begin, finish = _window(signal, spin, start, end, slowest, fastest)
-    times = _times(response.times, begin, finish, shaft)
+    times = _times(source.times, begin, finish, shaft)
     z = np.asarray(signal.at(times), complex)
     angle, speed = shaft.at(times), spin.at(times)
     if centre == "mass":
-        z = z + _to_mass_centre(response, place, angle, times)
-    origin = _origin(response, place, about, z, float(np.mean(speed)), shaft)
+        z = z + _to_mass_centre(source, signal.name, angle, times)
+    origin = _origin(source, signal.name, about, z, float(np.mean(speed)), shaft)
     z = z - origin
     p, n = _circles(angle, z)  # exp(i angle) turns with the spin, whatever its sense
     roundness = _roundness(z, float(np.sign(np.mean(speed)) or 1.0))
     changed = float(np.ptp(speed)) > CHANGED * float(np.max(np.abs(speed)))
     return Orbit(
-        scene=response.scene,
+        scene=source.scene,
         status="complete; the speed changes over the window, so the ellipse is a mean" if changed else "complete",
         settings={"start": begin, "end": finish, "slowest": slowest, "fastest": fastest, "reference": shaft.name},
-        place=place,
+        place=signal.name,
         centre=centre,
         about=about,
         unit=signal.unit,
@@ -198,10 +204,16 @@ def _times(own: FloatArray, begin: float, finish: float, shaft: TimeHistory) -> 
     return np.linspace(begin, finish, min(int(PER_REVOLUTION * turns) + 2, MOST_POINTS))
 
 
-def _to_mass_centre(response: Response, place: str, angle: FloatArray, times: FloatArray) -> np.ndarray:
+def _spin(source: Response | MeasuredChannels, shaft: TimeHistory) -> TimeHistory:
+    """Speed of the shaft; where none is recorded the slope of its angle."""
+    name = f"{shaft.name.removesuffix('.angle')}.speed"
+    return source[name] if name in source else TimeHistory(name, "rad/s", shaft.times, slope_at(shaft, shaft.times))
+
+
+def _to_mass_centre(response: Response | MeasuredChannels, place: str, angle: FloatArray, times: FloatArray) -> np.ndarray:
     """x + i y from the geometric centre of a rotor to its centre of mass."""
-    if response.scene is None:
-        raise AnalysisError("The response came from a file without its scene, so the centre of mass is unknown; take centre='geometric'.")
+    if isinstance(response, MeasuredChannels) or response.scene is None:
+        raise AnalysisError("This response or record comes without its scene, so the centre of mass is unknown; take centre='geometric'.")
     masses = rotor_masses(response.scene)
     if place not in masses:
         raise unknown_place("rotor", place, masses)
@@ -212,14 +224,14 @@ def _to_mass_centre(response: Response, place: str, angle: FloatArray, times: Fl
     return arm
 
 
-def _origin(response: Response, place: str, about: str, z: np.ndarray, speed: float, shaft: TimeHistory) -> complex:
+def _origin(response: Response | MeasuredChannels, place: str, about: str, z: np.ndarray, speed: float, shaft: TimeHistory) -> complex:
     if about == "axis":
         return 0j
     if about == "mean":
         return complex(np.mean(z))
     scene = response.scene
     if scene is None:
-        raise AnalysisError("The response came from a file without its scene, so its static deflection is unknown; take about='mean'.")
+        raise AnalysisError("This response or record comes without its scene, so the static deflection is unknown; take about='mean'.")
     ratio = spin_ratios(scene).get(scene.network().places[shaft.name.removesuffix(".angle")], 0.0) or 1.0
     known = getattr(response, "static_deflection", {})
     if place in known:

@@ -10,9 +10,9 @@ import numpy as np
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.signals.plane_signal import turning_place
 from hdrive_mbs.analysis.signals.shaft_angle import TURN, ShaftAngle, shaft_history
+from hdrive_mbs.analysis.signals.source import Source
 from hdrive_mbs.analysis.signals.spectrum import chosen_history, chosen_span, folding_note, sample_count, values_at
 from hdrive_mbs.analysis.signals.windows import line_amplitudes, local_maxima, window_named
-from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.printed_table import PrintedTable
 from hdrive_mbs.signals import FloatArray, TimeHistory
@@ -88,7 +88,7 @@ class OrderSpectrum(Result):
 
 
 def order_spectrum(
-    source: Response | TimeHistory,
+    source: Source,
     channel: str | None = None,
     *,
     against: str | TimeHistory | None = None,

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.signals.plane_signal import PlaneSignal, Signal, turning_place
 from hdrive_mbs.analysis.signals.shaft_angle import TURN, ShaftAngle, shaft_history, turning_span
+from hdrive_mbs.analysis.signals.source import Source
 from hdrive_mbs.analysis.signals.spectrum import chosen_span
-from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.analysis.unbalance.whirl_orbit import lag
 from hdrive_mbs.errors import AnalysisError, ParameterError, unknown_place
 from hdrive_mbs.printed_table import PrintedTable
@@ -102,8 +102,8 @@ class OrderTracking(Result):
 
 
 def order_tracking(
-    source: Response | TimeHistory,
-    channel: str | None = None,
+    source: Source,
+    channel: str | tuple[str, str] | None = None,
     *,
     orders: Sequence[float] = (1.0,),
     reference: str | TimeHistory | None = None,
@@ -115,7 +115,7 @@ def order_tracking(
 ) -> OrderTracking:
     """Amplitude and lag of orders along a run-up or coast-down: a Bode plot without stopping.
 
-    channel : a channel, or a place with x and y, whose forward and backward whirl are told apart
+    channel : a channel, or a place with x and y (or two channels), whose forward and backward whirl are told apart
     orders : periods per revolution, greater than 0
     reference : shaft whose angle counts, by place, channel or history [rad]; as for ``waterfall``
     revolutions : length of the window that slides along

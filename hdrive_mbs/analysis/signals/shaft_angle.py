@@ -8,20 +8,24 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
-from hdrive_mbs.analysis.time_response import Response
+from hdrive_mbs.analysis.signals.source import MeasuredChannels, Source, readable
 from hdrive_mbs.errors import AnalysisError, ParameterError
 from hdrive_mbs.signals import FloatArray, TimeHistory
 
 TURN = 2.0 * np.pi
 
 
-def shaft_history(source: Response | TimeHistory, against: str | TimeHistory) -> TimeHistory:
-    """The angle meant by a history, a channel ("motor.angle") or a place ("motor")."""
+def shaft_history(given: Source | MeasuredChannels, against: str | TimeHistory) -> TimeHistory:
+    """The angle meant by a history, a channel ("motor.angle") or a place ("motor").  Raises ParameterError for what is no angle."""
     if isinstance(against, TimeHistory):
         return against
+    source = readable(given)
     if isinstance(source, TimeHistory):
         raise ParameterError(f"against = {against!r} names a channel, but a single time history has none; give the angle as a TimeHistory.")
-    return source[against if against in source or against.endswith(".angle") else f"{against}.angle"]
+    found = source[against if against in source or against.endswith(".angle") else f"{against}.angle"]
+    if found.unit != "rad":
+        raise ParameterError(f"{found.name} is in {found.unit}, but turns are counted by an angle [rad].")
+    return found
 
 
 def slope_at(shaft: TimeHistory, times: FloatArray) -> FloatArray:

@@ -9,11 +9,11 @@ import numpy as np
 from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.signals.plane_signal import PlaneSignal
 from hdrive_mbs.analysis.signals.sliding_spectra import piece_samples, sliding_spectra
+from hdrive_mbs.analysis.signals.source import Source
 from hdrive_mbs.analysis.signals.windows import window_named
-from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.printed_table import PrintedTable, thinned
-from hdrive_mbs.signals import FloatArray, TimeHistory
+from hdrive_mbs.signals import FloatArray
 
 TURN = 2.0 * np.pi
 
@@ -64,8 +64,8 @@ class Spectrogram(Result):
 
 
 def spectrogram(
-    source: Response | TimeHistory,
-    channel: str | None = None,
+    source: Source,
+    channel: str | tuple[str, str] | None = None,
     *,
     length: float | None = None,
     overlap: float = 0.9,
@@ -76,7 +76,7 @@ def spectrogram(
 ) -> Spectrogram:
     """Amplitude spectra (0-peak) of pieces of a channel, or of x + i y of a place, over time.
 
-    channel : a channel, or a place with x and y for the two-sided spectrum (``"rotor_1"``)
+    channel : a channel, or a place with x and y (or two channels) for the two-sided spectrum (``"rotor_1"``)
     length : of a piece [s]; a twentieth of the span if not given
     overlap : share of a piece that the next one repeats
     window, start, end, step : as for ``spectrum``

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrive_mbs.analysis.result import Result
+from hdrive_mbs.analysis.signals.source import MeasuredChannels, Source, readable
 from hdrive_mbs.analysis.signals.windows import line_amplitudes, local_maxima, window_named
 from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.errors import AnalysisError, ParameterError
@@ -89,7 +90,7 @@ class Spectrum(Result):
 
 
 def spectrum(
-    source: Response | TimeHistory,
+    source: Source,
     channel: str | None = None,
     *,
     window: str = "hann",
@@ -97,7 +98,7 @@ def spectrum(
     end: float | None = None,
     step: float | None = None,
 ) -> Spectrum:
-    """Amplitude spectrum (0-peak) of a channel of a response, or of a time history.
+    """Amplitude spectrum (0-peak) of a channel of a response or of a record, or of a time history.
 
     window : "hann", "rectangular", "hamming", "blackman" or "flat_top"
     start, end : part of the record to analyse [s]; all of it if not given
@@ -135,18 +136,20 @@ def spectrum(
     )
 
 
-def chosen_history(source: Response | TimeHistory, channel: str | None) -> tuple[TimeHistory, Scene | None]:
+def chosen_history(given: Source | MeasuredChannels, channel: str | None) -> tuple[TimeHistory, Scene | None]:
     """The time history meant, and the scene it comes from."""
+    source = readable(given)
     if isinstance(source, TimeHistory):
         if channel is not None and channel != source.name:
             raise ParameterError(f"The time history is {source.name!r}, not {channel!r}; leave the channel out.")
         return source, None
     if channel is None:
-        raise ParameterError(f"Name the channel to analyse. The response has: {', '.join(source.channels)}.")
+        what = "record" if isinstance(source, MeasuredChannels) else "response"
+        raise ParameterError(f"Name the channel to analyse. The {what} has: {', '.join(source.channels)}.")
     return source[channel], source.scene
 
 
-def values_at(source: Response | TimeHistory, history: TimeHistory, times: FloatArray) -> FloatArray:
+def values_at(source: Source | MeasuredChannels, history: TimeHistory, times: FloatArray) -> FloatArray:
     """The history at even times; of a response by its laws at the interpolated state."""
     return source.at(history.name, times) if isinstance(source, Response) else history.at(times)
 

@@ -11,9 +11,9 @@ from hdrive_mbs.analysis.result import Result
 from hdrive_mbs.analysis.signals.plane_signal import PlaneSignal, turning_place
 from hdrive_mbs.analysis.signals.shaft_angle import TURN, ShaftAngle, shaft_history, turning_span
 from hdrive_mbs.analysis.signals.sliding_spectra import piece_samples, sliding_spectra
+from hdrive_mbs.analysis.signals.source import Source
 from hdrive_mbs.analysis.signals.spectrum import chosen_span
 from hdrive_mbs.analysis.signals.windows import Window, window_named
-from hdrive_mbs.analysis.time_response import Response
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.printed_table import PrintedTable, thinned
 from hdrive_mbs.signals import FloatArray, TimeHistory
@@ -89,8 +89,8 @@ class Waterfall(Result):
 
 
 def waterfall(
-    source: Response | TimeHistory,
-    channel: str | None = None,
+    source: Source,
+    channel: str | tuple[str, str] | None = None,
     *,
     reference: str | TimeHistory | None = None,
     axis: str = "frequency",
@@ -103,7 +103,7 @@ def waterfall(
 ) -> Waterfall:
     """Amplitude spectra (0-peak) at evenly spaced speeds of a run.
 
-    channel : a channel, or a place with x and y for the full spectrum: forward whirl at positive, backward whirl at
+    channel : a channel, or a place with x and y (or two channels) for the full spectrum: forward whirl at positive, backward whirl at
         negative lines
     reference : shaft whose speed is meant, by place, channel of its angle or history [rad]; the place of the channel
         if it turns, else the reference shaft
