@@ -23,7 +23,8 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "rotor_line_builder": ("rotor_line", "ShaftMaterial"),
     "signals": ("TimeHistory",),
     "quantity": ("UnusualValueWarning",),
-    "quantities": ("parameter", "table", "option", "rpm", "mm", "degrees", "arcmin"),
+    "quantities": ("parameter", "table", "option"),
+    "conversions": ("rpm", "mm", "degrees", "arcmin"),
     "errors": (
         "HdriveError", "KeywordError", "ParameterError", "UnitError", "PlaceError", "SceneError", "LawError", "FileFormatError",
         "RecordError", "SimulationError", "AnalysisError",

@@ -82,6 +82,10 @@ from hdrive_mbs.components.shaft_section import ShaftSection as ShaftSection
 from hdrive_mbs.components.simplified_section import SimplifiedSection as SimplifiedSection
 from hdrive_mbs.components.speed_controller import SpeedController as SpeedController
 from hdrive_mbs.components.tooth_errors import tooth_errors as tooth_errors
+from hdrive_mbs.conversions import arcmin as arcmin
+from hdrive_mbs.conversions import degrees as degrees
+from hdrive_mbs.conversions import mm as mm
+from hdrive_mbs.conversions import rpm as rpm
 from hdrive_mbs.diagnosis.bench import Bench as Bench
 from hdrive_mbs.diagnosis.bench import Input as Input
 from hdrive_mbs.diagnosis.bench import Uncertain as Uncertain
@@ -270,12 +274,8 @@ from hdrive_mbs.plots.diagnosis_ranking import plot_ranking as plot_ranking
 from hdrive_mbs.plots.diagnosis_traces import plot_residual as plot_residual
 from hdrive_mbs.plots.diagnosis_traces import plot_traces as plot_traces
 from hdrive_mbs.plots.report_html import write_report_html as write_report_html
-from hdrive_mbs.quantities import arcmin as arcmin
-from hdrive_mbs.quantities import degrees as degrees
-from hdrive_mbs.quantities import mm as mm
 from hdrive_mbs.quantities import option as option
 from hdrive_mbs.quantities import parameter as parameter
-from hdrive_mbs.quantities import rpm as rpm
 from hdrive_mbs.quantities import table as table
 from hdrive_mbs.quantity import UnusualValueWarning as UnusualValueWarning
 from hdrive_mbs.records.alignment import ClockMatch as ClockMatch

@@ -1,7 +1,4 @@
-"""Described values: every field of a part, law or effect knows its unit, meaning and range.
-
-SI inside.  Convert at the door: ``speed=rpm(1410)``, ``lost_motion=arcmin(9)``.
-"""
+"""Described values: every field of a part, law or effect knows its unit, meaning and range."""
 
 from __future__ import annotations
 
@@ -18,26 +15,6 @@ from weakref import WeakKeyDictionary
 from hdrive_mbs.call_arguments import cannot_be_called
 from hdrive_mbs.errors import KeywordError, ParameterError, unknown_place
 from hdrive_mbs.quantity import Quantity
-
-
-def rpm(value: float) -> float:
-    """Revolutions per minute -> rad/s."""
-    return value * math.pi / 30.0
-
-
-def mm(value: float) -> float:
-    """Millimetres -> m."""
-    return value * 1e-3
-
-
-def degrees(value: float) -> float:
-    """Degrees -> rad."""
-    return math.radians(value)
-
-
-def arcmin(value: float) -> float:
-    """Minutes of arc -> rad."""
-    return math.radians(value / 60.0)
 
 
 def parameter(

@@ -71,7 +71,7 @@ def rotor_line(
     shaft : one diameter [m] from the first station to the last, or steps (z_from, z_to, diameter) or
         (z_from, z_to, diameter, bore) that follow each other without gap; they may reach beyond the stations
     material : of the whole shaft.  Without a density the shaft is massless: then every step must end at a station
-    largest_element : longest beam element [m]; None: one element from each station or step to the next
+    largest_element : longest beam element [m] of a shaft with density; None: one element from each station or step to the next
     rigid : pairs of neighbouring stations with a rigid piece without mass between them (a bearing close to a rotor)
     attached : name -> (station, part): what sits rigidly at a station too (a drive, a bearing on a disc)
     parts, connections : anything further (gravity, a motor with its coupling), as in Scene
@@ -231,7 +231,12 @@ def _section(step: _Step, length: float, material: ShaftMaterial, largest: float
     count = 1
     if largest is not None:
         longest = _number("largest_element", largest, Quantity(unit="m", doc="longest beam element", above=0.0))
-        count = math.ceil(length / longest * (1.0 - SAME_PLACE)) if material.density > 0.0 else 1
+        if material.density == 0.0:
+            raise ParameterError(
+                f"largest_element = {longest:g} m: a massless shaft has no places between its stations, one element is exact there. "
+                "Give the material a density (steel: 7850), or leave largest_element out."
+            )
+        count = math.ceil(length / longest * (1.0 - SAME_PLACE))
     return ShaftSection(length=length, diameter=step.diameter, bore=step.bore, elements=float(max(1, count)), **fields)
 
 

@@ -9,8 +9,9 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.conversions import degrees
 from hdrive_mbs.errors import ParameterError, unknown_place
-from hdrive_mbs.quantities import Described, degrees, option, parameter
+from hdrive_mbs.quantities import Described, option, parameter
 from hdrive_mbs.teeth.deformation import DeformationLaw, FloatArray
 from hdrive_mbs.teeth.design_points import REASONS, UNITS, VARIABLES, DesignPoints
 from hdrive_mbs.teeth.kinematics import check_assembly

@@ -7,7 +7,8 @@ from typing import Self
 
 import numpy as np
 
-from hdrive_mbs.quantities import degrees, parameter
+from hdrive_mbs.conversions import degrees
+from hdrive_mbs.quantities import parameter
 from hdrive_mbs.teeth.deformation import DeformationLaw, FloatArray
 
 

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hdrive_mbs.conversions import degrees
 from hdrive_mbs.errors import ParameterError
-from hdrive_mbs.quantities import Described, degrees, parameter, table
+from hdrive_mbs.quantities import Described, parameter, table
 from hdrive_mbs.tables import check_table
 from hdrive_mbs.teeth.deformation import FloatArray
 from hdrive_mbs.teeth.outline import closed, crossings, straight_flank

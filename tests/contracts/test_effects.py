@@ -29,6 +29,7 @@ from hdrive_mbs.components.load import Load
 from hdrive_mbs.components.motor import Motor
 from hdrive_mbs.components.sensor import Sensor
 from hdrive_mbs.components.shaft import Shaft
+from hdrive_mbs.conversions import arcmin, rpm
 from hdrive_mbs.diagnosis.candidates import known_effects
 from hdrive_mbs.effects.actuator_lag import ActuatorLag
 from hdrive_mbs.effects.bouc_wen_hysteresis import BoucWenHysteresis
@@ -94,7 +95,7 @@ from hdrive_mbs.network.claims import check_claims
 from hdrive_mbs.network.elements import Connection
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Network
-from hdrive_mbs.quantities import arcmin, parameter, rpm
+from hdrive_mbs.quantities import parameter
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.scene_file import scene_from_dict, scene_to_dict
 

@@ -20,9 +20,10 @@ from hdrive_mbs.bearings.law import BearingLaw, RelativeMotion
 from hdrive_mbs.bearings.linear import LinearBearing
 from hdrive_mbs.bearings.power import PowerBearing
 from hdrive_mbs.bearings.speed_table import TableBearing
+from hdrive_mbs.conversions import rpm
 from hdrive_mbs.errors import AnalysisError, KeywordError, LawError, ParameterError
 from hdrive_mbs.expression import Value, derivative, evaluate, record, variable
-from hdrive_mbs.quantities import parameter, rpm
+from hdrive_mbs.quantities import parameter
 
 NAMES = [field.name for field in fields(RelativeMotion)]
 

@@ -15,6 +15,7 @@ from hdrive_mbs.components.inertia import Inertia
 from hdrive_mbs.components.load import Load
 from hdrive_mbs.components.motor import Motor
 from hdrive_mbs.components.shaft import Shaft
+from hdrive_mbs.conversions import rpm
 from hdrive_mbs.effects.bouc_wen_hysteresis import BoucWenHysteresis
 from hdrive_mbs.effects.coulomb_stribeck_friction import CoulombStribeckFriction
 from hdrive_mbs.effects.coupling_backlash import CouplingBacklash
@@ -34,7 +35,6 @@ from hdrive_mbs.motors.asynchronous import AsynchronousMotor
 from hdrive_mbs.network.elements import Connection
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Network
-from hdrive_mbs.quantities import rpm
 from hdrive_mbs.scene import Scene
 
 TIGHT = DormandPrince(relative_tolerance=1e-10, absolute_tolerance=1e-12, max_step=1e-3)

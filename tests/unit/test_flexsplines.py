@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
+from hdrive_mbs.conversions import arcmin
 from hdrive_mbs.errors import LawError, ParameterError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.flexsplines.continuous import ContinuousStiffness
@@ -22,7 +23,6 @@ from hdrive_mbs.flexsplines.law import StiffnessFunction, StiffnessLaw
 from hdrive_mbs.flexsplines.linear import LinearStiffness
 from hdrive_mbs.flexsplines.piecewise_linear import PiecewiseLinearStiffness
 from hdrive_mbs.flexsplines.table import TableStiffness
-from hdrive_mbs.quantities import arcmin
 from tests.unit.law_checks import assert_derivative_is_exact, assert_records_itself, run_on_engine
 from tests.verification.scenes import train
 

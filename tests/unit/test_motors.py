@@ -14,6 +14,7 @@ from scipy.optimize import minimize_scalar
 
 import hdrive_mbs as hm
 from hdrive_mbs.components.speed_controller import SpeedController
+from hdrive_mbs.conversions import rpm
 from hdrive_mbs.errors import LawError, ParameterError, PlaceError, SceneError
 from hdrive_mbs.expression import Value, gradient
 from hdrive_mbs.loads.constant import ConstantTorque
@@ -28,7 +29,6 @@ from hdrive_mbs.motors.profiles.ramp import SpeedRamp
 from hdrive_mbs.motors.profiles.table import SpeedTable
 from hdrive_mbs.motors.servo import ServoMotor
 from hdrive_mbs.motors.torque_speed_table import TorqueSpeedTable
-from hdrive_mbs.quantities import rpm
 from tests.unit.law_checks import assert_derivative_is_exact, assert_records_itself, run_on_engine
 from tests.verification.scenes import train
 

@@ -6,8 +6,8 @@ import math
 
 import pytest
 
+from hdrive_mbs.conversions import arcmin
 from hdrive_mbs.flexsplines.piecewise_linear import PiecewiseLinearStiffness
-from hdrive_mbs.quantities import arcmin
 
 # Table 1: phi0 = 9 arcmin, K1, K2, K3 in N m/rad, T1, T2 in N m, and the torque T of each row
 PHI0_ARCMIN = 9.0
