@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from hdrive_mbs.bearings.law import DIRECTIONS, BearingLaw, RelativeMotion
 from hdrive_mbs.components.component import Component, Flange
-from hdrive_mbs.components.housing import Housing
+from hdrive_mbs.components.housing import Housing, raised
+from hdrive_mbs.components.housing_channels import add_across, add_foundation_force
 from hdrive_mbs.errors import LawError, ParameterError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.bearing_draft import BearingDraft, SupportDraft
@@ -64,7 +65,12 @@ class Bearing(Component):
             for direction, coordinate in zip("xy", housing):
                 stretches[direction] = {**stretches[direction], coordinate: -1.0}
         bearing = add_bearing(name, draft, station, self.law, stretches)
-        draft.add_bearing(bearing, None if self.housing is None else _support(name, station, self.housing, stretches))
+        support = None
+        if self.housing is not None:
+            support = _support(name, station, self.housing, stretches)
+            add_across(name, draft, stretches)
+            add_foundation_force(name, draft, self.housing, support.displacement)
+        draft.add_bearing(bearing, support)
 
 
 def _support(name: str, station: Station, housing: Housing, stretches: Mapping[str, Mapping[str, float]]) -> SupportDraft:
@@ -75,11 +81,7 @@ def _support(name: str, station: Station, housing: Housing, stretches: Mapping[s
         factors = {c: ring.get(c, 0.0) - across.get(c, 0.0) for c in (*ring, *across)}
         displacement[key] = {c: factor for c, factor in factors.items() if factor != 0.0}
 
-    def spring(direction: str, x: Value) -> Value:
-        stiffness, power = getattr(housing, f"stiffness_{direction}"), getattr(housing, f"power_stiffness_{direction}")
-        return stiffness * x + (power * raised(x, int(housing.power)) if power != 0.0 else 0.0)
-
-    return SupportDraft(name, displacement, housing.mass, {"x": housing.damping_x, "y": housing.damping_y}, spring)
+    return SupportDraft(name, displacement, housing.mass, {"x": housing.damping_x, "y": housing.damping_y}, housing.spring)
 
 
 def has_forces(law: BearingLaw) -> bool:
@@ -142,14 +144,6 @@ def add_housing_across(name: str, draft: Draft, station: Station, housing: Housi
 def power_law(factor: float, exponent: int) -> Torque:
     """factor * x^exponent."""
     return lambda moment, x, v: factor * raised(x, exponent)
-
-
-def raised(value: Value, exponent: int) -> Value:
-    """value^n by multiplication, exact for negative values in every back end."""
-    result = value
-    for _ in range(exponent - 1):
-        result = result * value
-    return result
 
 
 def add_bearing(name: str, draft: Draft, station: Station, law: BearingLaw, stretches: Mapping[str, Mapping[str, float]]) -> BearingDraft:

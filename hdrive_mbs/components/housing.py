@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import Described, parameter
 
 
@@ -43,3 +44,20 @@ class Housing(Described):
             power_stiffness_y=power_stiffness,
             power=power,
         )
+
+    def spring(self, direction: str, x: Value) -> Value:
+        """Force of the foundation [N] against a displacement in "x" or "y" [m]: k x + k_n x^n."""
+        stiffness, power = getattr(self, f"stiffness_{direction}"), getattr(self, f"power_stiffness_{direction}")
+        return stiffness * x + (power * raised(x, int(self.power)) if power != 0.0 else 0.0)
+
+    def force(self, direction: str, x: Value, v: Value) -> Value:
+        """Of the housing on its foundation [N]: k x + k_n x^n + b x'."""
+        return self.spring(direction, x) + getattr(self, f"damping_{direction}") * v
+
+
+def raised(value: Value, exponent: int) -> Value:
+    """value^n by multiplication, exact for negative values in every back end."""
+    result = value
+    for _ in range(exponent - 1):
+        result = result * value
+    return result

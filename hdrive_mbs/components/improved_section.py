@@ -13,6 +13,7 @@ from hdrive_mbs.bearings.looked_at import directions_looked_at
 from hdrive_mbs.components.bearing import add_law, power_law
 from hdrive_mbs.components.component import Flange
 from hdrive_mbs.components.condensed_line import CondensedLine, condensed_line
+from hdrive_mbs.components.housing_channels import add_across, add_foundation_force
 from hdrive_mbs.components.recovered_place import add_place, factors_of
 from hdrive_mbs.components.section_torsion import add_spring, turning
 from hdrive_mbs.components.shaft_section import ShaftSection
@@ -191,6 +192,7 @@ class ImprovedSection(SupportedSection):
             for key in "xy":
                 coordinate = f"{name}.housing.{key}"
                 stretches[key][coordinate] = stretches[key].get(coordinate, 0.0) - 1.0
+            add_foundation_force(name, draft, self.bearing.housing, {key: {f"{name}.housing.{key}": 1.0} for key in "xy"})
         for key in self.kept:
             stretches[key] = {f"{name}.across_{key}" if self._is_across(key) else f"{name}.{key}": 1.0}
         sag = self.condensed.ring_sag
@@ -198,4 +200,6 @@ class ImprovedSection(SupportedSection):
         def offset(row: int) -> float:
             return float(sag[row] @ np.array(draft.gravity)) if row < len(sag) else 0.0
 
+        if self.bearing.housing is not None:
+            add_across(name, draft, stretches, offset)
         add_law(name, draft, self.bearing.law, stretches, offset)
