@@ -150,6 +150,8 @@ def simulate(
     cancel : event that stops the run; what was computed is returned with status "cancelled"
     lowering : "python" runs every law as a Python callback (for comparison only)
 
+    A rotor line begins undeflected and rings under its weight; ``run_up`` and ``coast_down`` begin in its static deflection.
+
     Raises SimulationError when the run diverged or stopped early, or the step of an explicit solver is beyond its limit of
     stability; LawError for a law that gives no number at the start; ParameterError for bad arguments.  Warns
     CoarseStepWarning, and says so in the status, where the step of an implicit solver is too long for the motion that comes out.

@@ -29,7 +29,8 @@ class TableBearing(RadialBearing):
     sign: for negative speed the xy and yx coefficients change sign, the direct ones do not.
 
     Source: the form in which film bearings are calculated and measured (seed M (6) at each speed).
-    Leaves out the dependence on amplitude and on the frequency of vibration.  With cross-coupled
+    Leaves out the dependence on amplitude and on the frequency of vibration.  Coefficients of a film hold about the journal's
+    position under its load: displacements count from there, and Gravity is left out beside them.  With cross-coupled
     values at the first speed the force jumps where the spin passes through zero.
     """
 

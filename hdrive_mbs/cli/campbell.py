@@ -53,13 +53,29 @@ def campbell(
 def document(result: WhirlCampbell) -> dict[str, Any]:
     """What --json writes."""
     return {
+        "status": result.status,
         "speeds": result.speeds,
+        "stable": result.stable,
         "branches": [
             {"whirl": word, "frequency": result.frequencies[:, k], "damping_ratio": result.damping_ratios[:, k]}
             for k, word in enumerate(result.whirl)
         ],
         "critical_speeds": [
-            {"order": result.order_numbers[order], "whirl": word, "speed": float(speed)}
-            for order, word, speed in zip(result.critical_orders, result.critical_whirl, result.critical_speeds, strict=True)
+            {
+                "order": result.order_numbers[order],
+                "of": result.order_places[order],
+                "branch": result.critical_branches[k],
+                "whirl": result.critical_whirl[k],
+                "speed": float(result.critical_speeds[k]),
+                "damping_ratio": float(result.critical_damping_ratios[k]),
+                "note": result.critical_notes[k],
+            }
+            for k, order in enumerate(result.critical_orders)
+        ],
+        "thresholds": [
+            {"branch": branch, "speed": float(speed), "frequency": float(frequency), "note": note}
+            for branch, speed, frequency, note in zip(
+                result.threshold_branches, result.threshold_speeds, result.threshold_frequencies, result.threshold_notes, strict=True
+            )
         ],
     }

@@ -45,6 +45,8 @@ class Rotor(Component):
     def disc(cls, *, diameter: float, thickness: float, density: float, bore: float = 0.0, **unbalance: Any) -> Self:
         """A (bored) disc: m = pi rho h (D^2 - d^2)/4, Jp = m (D^2 + d^2)/8, Jt = Jp/2 + m h^2/12.  Lengths in m, density in kg/m^3.
 
+        On a shaft with density give its diameter as the bore: else the shaft in the disc counts twice.
+
         Raises ParameterError for an eccentricity of more than the radius: no centre of mass lies outside of its disc.
         """
         for name, value in (("diameter", diameter), ("thickness", thickness), ("density", density)):

@@ -51,7 +51,7 @@ def test_json_has_exactly_the_agreed_form_and_the_numbers_of_the_api(scene: str,
     call("campbell", scene, "--speeds", "0:400:21", "--orders", "1,2", "--count", "4", "--json", str(tmp_path / "c.json"))
     written = json.loads((tmp_path / "c.json").read_text())
     result = hm.campbell(overhung_disc(), np.linspace(0.0, 400.0, 21), (1, 2), count=4)
-    assert set(written) == {"speeds", "branches", "critical_speeds", "origin"}
+    assert set(written) == {"status", "speeds", "stable", "branches", "critical_speeds", "thresholds", "origin"}
     assert written["speeds"] == pytest.approx(np.linspace(0.0, 400.0, 21).tolist())
     assert len(written["branches"]) == 4
     for k, branch in enumerate(written["branches"]):
@@ -62,7 +62,27 @@ def test_json_has_exactly_the_agreed_form_and_the_numbers_of_the_api(scene: str,
         assert len(branch["damping_ratio"]) == 21
     assert [critical["speed"] for critical in written["critical_speeds"]] == pytest.approx(result.critical_speeds.tolist(), rel=1e-12)
     assert {critical["order"] for critical in written["critical_speeds"]} == {1.0, 2.0}
-    assert all(set(critical) == {"order", "whirl", "speed"} for critical in written["critical_speeds"])
+    for critical, damping, note, branch in zip(
+        written["critical_speeds"], result.critical_damping_ratios, result.critical_notes, result.critical_branches, strict=True
+    ):
+        assert set(critical) == {"order", "of", "branch", "whirl", "speed", "damping_ratio", "note"}
+        assert (critical["damping_ratio"], critical["note"], critical["branch"]) == (pytest.approx(damping, rel=1e-9), note, branch)
+
+
+def test_json_of_an_unstable_line_says_so(tmp_path: Path) -> None:
+    hm.save_scene(internally_damped(), tmp_path / "damped.toml")
+    call("campbell", str(tmp_path / "damped.toml"), "--speeds", "0:1600:9", "--count", "4", "--json", str(tmp_path / "c.json"))
+    written = json.loads((tmp_path / "c.json").read_text())
+    result = hm.campbell(internally_damped(), np.linspace(0.0, 1600.0, 9), count=4)
+    assert written["status"] == result.status
+    assert "unstable above" in written["status"]
+    assert written["stable"] == result.stable.tolist()
+    assert written["stable"][0] is True
+    assert written["stable"][-1] is False
+    assert [(item["speed"], item["note"]) for item in written["thresholds"]] == [
+        (pytest.approx(speed, rel=1e-9), note) for speed, note in zip(result.threshold_speeds, result.threshold_notes, strict=True)
+    ]
+    assert written["thresholds"]
 
 
 def test_what_does_not_exist_is_null(tmp_path: Path) -> None:
