@@ -55,6 +55,17 @@ def passed_over(found: Sequence[Found], looks: Sequence[tuple[Suspect, Look]], l
     return [(suspect, look) for suspect, look in looks if suspect.label[0] in families and suspect.label not in labels]
 
 
+def not_begun(
+    found: Sequence[Found], looks: Sequence[tuple[Suspect, Look]], begun: Sequence[tuple[Suspect, Look]]
+) -> list[tuple[Suspect, Look]]:
+    """Looks at further laws of the label that came out best: each has starts of its own, and another law's values may hold it in a hollow.
+
+    found : fitted laws, best first;  begun : looks that were fitted
+    """
+    laws = {suspect.law for suspect, _ in begun if suspect.label == found[0].suspect.label}
+    return [(suspect, look) for suspect, look in looks if suspect.label == found[0].suspect.label and suspect.law not in laws]
+
+
 def picked(looks: Sequence[tuple[Suspect, Look]], *, laws: int) -> list[tuple[Suspect, Look]]:
     """The best laws of each label, so many of each: first the best of every label, then the second ones, and so on.
 

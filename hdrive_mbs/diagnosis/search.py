@@ -10,7 +10,7 @@ import numpy as np
 
 from hdrive_mbs.diagnosis.beginnings import begun_at, beside, widths_of
 from hdrive_mbs.diagnosis.candidates import Candidate
-from hdrive_mbs.diagnosis.choosing import SEEN, beyond, enough, leaves, passed_over, picked, spread_out, worth
+from hdrive_mbs.diagnosis.choosing import SEEN, beyond, enough, leaves, not_begun, passed_over, picked, spread_out, worth
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.force_orders import StandsOut
 from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, restarts, unfinished
@@ -223,7 +223,7 @@ class _Work:
         if far and not scanning and (not found or found[0].fitted.typical > SEEN):
             found = cheapest([*found, *self.scanned(everything)])
         if found and leaves(found[0].fitted.typical, base, ENOUGH):
-            found = cheapest([*found, *self._others(passed_over(found, first, chosen))])
+            found = cheapest([*found, *self._others([*not_begun(found, closer, best), *passed_over(found, first, chosen)])])
         return found, [(suspect, look.cost) for suspect, look in first]
 
     def other_ways(self, found: list[Found], base: Fitted, everything: Sequence[Suspect]) -> list[Found]:
@@ -243,7 +243,7 @@ class _Work:
         return cheapest([*found, *begun, *self.fitted(going, "fitting on from there")])
 
     def _others(self, looks: Sequence[tuple[Suspect, Look]]) -> list[Found]:
-        """A few joint steps from looks, and the best of them fitted to the end."""
+        """A few joint steps from looks that had been left aside, and the best of them fitted to the end."""
         tasks = [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE)) for suspect, look in looks]
         brief = cheapest(self.fitted(tasks, "other places of the best"))
         best = [(item.suspect, further(item.fitted)) for item in brief[: self.how.serious]]

@@ -16,7 +16,7 @@ from hdrive_mbs.diagnosis import gather as gather_
 from hdrive_mbs.diagnosis.all_samples import Last, on_all_samples
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate, candidates
-from hdrive_mbs.diagnosis.choosing import beyond, enough, passed_over, picked, spread_out
+from hdrive_mbs.diagnosis.choosing import beyond, enough, not_begun, passed_over, picked, spread_out
 from hdrive_mbs.diagnosis.diagnose import factors_of, strongest_first
 from hdrive_mbs.diagnosis.differences import jacobian
 from hdrive_mbs.diagnosis.fit import Fitted, fit, secant
@@ -895,6 +895,17 @@ def test_every_label_gets_its_best_law_before_any_gets_its_second() -> None:
     looks = [(Suspect((family, "there"), law, (empty,), (empty,)), look) for family, law in laws]
     assert [suspect.law for suspect, _ in picked(looks, laws=2)] == ["Steep", "Probe", "Stiffness", "Open", "Sensor"]
     assert [suspect.law for suspect, _ in picked(looks, laws=1)] == ["Steep", "Probe", "Stiffness"]
+
+
+def test_further_laws_of_the_best_label_that_got_no_steps_are_named(near: Fitted) -> None:
+    empty = Hypothesis(())
+    look = Look(empty, np.zeros(0), 0.0, np.zeros(0), empty)
+    laws = [("crack", "Steep"), ("crack", "Open"), ("gain", "Probe"), ("crack", "Phased"), ("gain", "Sensor")]
+    looks = [(Suspect((family, "there"), law, (empty,), (empty,)), look) for family, law in laws]
+    crack, gain = Found(looks[0][0], near), Found(looks[2][0], near)
+    assert [suspect.law for suspect, _ in not_begun([crack, gain], looks, [looks[0], looks[2]])] == ["Open", "Phased"]
+    assert [suspect.law for suspect, _ in not_begun([gain, crack], looks, [looks[0], looks[2]])] == ["Sensor"]
+    assert not_begun([crack], looks, looks) == []
 
 
 def test_other_places_of_the_best_families_that_looks_passed_over_are_named(near: Fitted) -> None:
