@@ -243,6 +243,12 @@ def _names(cls: type[Described]) -> tuple[tuple[str, ...], frozenset[str]]:
     """Fields that a class takes, and those of them without a default."""
     found = _NAMES.get(cls)
     if found is None:
+        bare = [name for name, value in vars(cls).items() if isinstance(value, dataclasses.Field)]
+        if bare:
+            raise ParameterError(
+                f"{cls.__name__} has the fields {', '.join(bare)} but is no dataclass: "
+                "put @dataclass(frozen=True, kw_only=True) above its class line."
+            )
         fields = dataclasses.fields(cls)
         found = tuple(field.name for field in fields if field.init), frozenset(field.name for field in fields if is_needed(field))
         _NAMES[cls] = found

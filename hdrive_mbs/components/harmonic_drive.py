@@ -53,6 +53,11 @@ class HarmonicDrive(Component):
         if not isinstance(self.stiffness, StiffnessLaw):
             object.__setattr__(self, "stiffness", StiffnessFunction(function=self.stiffness))
         self.law.check_restoring()
+        if not self.damping_in_gap and self.damping > 0.0 and self.law.half_gap == 0.0 and self.law.is_slack():
+            raise ParameterError(
+                "HarmonicDrive.damping_in_gap = False: the stiffness gives no torque about zero twist but names no gap, so the damping "
+                "cannot leave one out. Use a law with lost_motion, or write a StiffnessLaw with the property half_gap [rad]."
+            )
         if self.output_sense not in ("opposite", "same"):
             raise ParameterError(f"HarmonicDrive.output_sense = {self.output_sense!r}: must be 'opposite' or 'same'.")
         if self.teeth is not None:

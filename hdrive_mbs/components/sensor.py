@@ -26,7 +26,7 @@ class Sensor(Component):
     gain: float = parameter("1", "reading per quantity", default=1.0)
     offset: float = parameter("1", "reading at zero, in units of the reading", default=0.0)
     resolution: float = parameter("1", "step of the reading, in units of the reading; 0 for none", default=0.0, low=0.0)
-    unit: str | None = option("unit of the reading (that of the quantity if not given)", default=None)
+    unit: str | None = option("unit of the reading where the gain changes it (that of the quantity if not given)", default=None)
 
     def check(self) -> None:
         if self.gain == 0.0:
@@ -40,4 +40,4 @@ class Sensor(Component):
         return self.resolution * np.floor(raw / self.resolution + 0.5)
 
     def build(self, name: str, draft: Draft) -> None:
-        draft.add_reading(name, self.quantity, self.reading, unit=self.unit)
+        draft.add_reading(name, self.quantity, self.reading, unit=self.unit, scaled=self.gain != 1.0)

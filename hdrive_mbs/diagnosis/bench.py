@@ -45,11 +45,13 @@ class Uncertain:
 class Input:
     """A column of the records that drives the scene.
 
-    path : field that takes it;  law : (times, values) -> what is put there, e.g. a TableTorque
+    path : field that takes it
+    law : (times [s], values), both arrays of shape (n,) -> what is put there, like
+        ``lambda t, amperes: hm.TorqueHistory(times=t, torques=0.11 * amperes)``
     """
 
     path: str
-    law: Callable[[tuple[float, ...], tuple[float, ...]], Any]
+    law: Callable[[FloatArray, FloatArray], Any]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -110,8 +112,8 @@ class Bench:
         columns = self.columns_of(record)
         times = record.times
         every = even_step(record)
-        moments = tuple((times - times[0]).tolist())
-        changes = {item.path: item.law(moments, tuple(columns[name].tolist())) for name, item in self.inputs.items()}
+        moments = times - times[0]
+        changes = {item.path: item.law(moments, columns[name]) for name, item in self.inputs.items()}
         return (
             Trial(
                 name=record.name,
@@ -135,8 +137,7 @@ class Bench:
         if unknown or not self.inputs:
             known = ", ".join(self.inputs) or "none; a bench that is driven in another way overrides planned()"
             raise ParameterError(f"Plan {plan.name!r}: inputs {', '.join(unknown) or '(none)'}; this bench has {known}.")
-        times = tuple(plan.times.tolist())
-        changes = {item.path: item.law(times, tuple(plan.sampled(name).tolist())) for name, item in self.inputs.items()}
+        changes = {item.path: item.law(plan.times, plan.sampled(name)) for name, item in self.inputs.items()}
         return (
             Trial(
                 name=plan.name,

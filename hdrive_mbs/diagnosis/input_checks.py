@@ -85,7 +85,7 @@ def _check_input(bench: Bench, record: Record, name: str) -> None:
             " record.between(start, end)."
         )
     item = bench.inputs[name]
-    unit = _unit_of_law(item.law((0.0, 1.0), (0.25, 0.75)), (0.25, 0.75))
+    unit = _unit_of_law(item.law(np.array([0.0, 1.0]), np.array([0.25, 0.75])), (0.25, 0.75))
     column = record.channels[name]
     if unit and column.unit != unit:
         raise UnitError(

@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.call_arguments import cannot_be_called
 from hdrive_mbs.errors import LawError
 from hdrive_mbs.expression import Value, gradient
 from hdrive_mbs.quantities import Described, option
@@ -44,6 +45,9 @@ class StiffnessLaw(Described):
         Looks at 2 x 300 twists between 1e-7 rad and largest_twist [rad], each sign, spaced both
         evenly and by magnitude; -1e-9 of the largest torque counts as zero (rounding).
         """
+        wrong = cannot_be_called(self.torque, (("twist",),))
+        if wrong:
+            raise LawError(f"{type(self).__name__}.torque {wrong}")
         if not self.restoring:
             return
         sizes = np.unique(np.concatenate((np.geomspace(1e-7, largest_twist, 200), np.linspace(1e-7, largest_twist, 100))))
@@ -60,6 +64,10 @@ class StiffnessLaw(Described):
                 f"{twists[worst]:.4g} rad: it must not pull away from zero twist. Correct the law or, if this is "
                 "meant, write it as a StiffnessLaw subclass with restoring = False."
             )
+
+    def is_slack(self) -> bool:
+        """Whether it gives no torque at a twist of 1e-7 rad to either side: inside a gap."""
+        return not np.any(self._sampled(np.array([-1e-7, 1e-7])))
 
     def _sampled(self, twists: FloatArray) -> FloatArray:
         """Torques at many twists, also of a law that takes single numbers only."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from hdrive_mbs.errors import PlaceError, SceneError
+from hdrive_mbs.errors import ParameterError, PlaceError, SceneError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.elements import Connection
 from hdrive_mbs.network.moment import Moment
@@ -44,7 +44,13 @@ def resolved_channels(channels: Sequence[Channel], readings: Sequence[Reading], 
             if path[-1] in path[:-1]:
                 raise SceneError(f"{' reads '.join(path)}: a reading cannot depend on itself.")
         for link in reversed(path[:-1]):
-            known[link] = replace(known[link], unit=known[link].unit or known[sources[link].quantity].unit)
+            read = known[sources[link].quantity]
+            if known[link].unit not in ("", read.unit) and not known[link].scaled:
+                raise ParameterError(
+                    f"{link}: its unit is {known[link].unit!r}, but it reads {read.name} in {read.unit!r} with a gain of 1, which changes "
+                    f"no unit. Give the gain, {known[link].unit} per {read.unit}, or leave the unit out."
+                )
+            known[link] = replace(known[link], unit=known[link].unit or read.unit)
     for reading in readings:
         reading.channel = known[reading.quantity]
     return tuple(known.values())

@@ -43,12 +43,17 @@ class DraftChannels(DraftPlaces):
         self._readings.append(reading)
         return reading
 
-    def add_reading(self, name: str, quantity: str, change: Callable[[Value], Value], *, unit: str | None = None) -> None:
-        """A sensor: a channel ``change(quantity)``; its unit is that of the quantity unless given."""
+    def add_reading(
+        self, name: str, quantity: str, change: Callable[[Value], Value], *, unit: str | None = None, scaled: bool = True
+    ) -> None:
+        """A sensor: a channel ``change(quantity)``; its unit is that of the quantity unless given.
+
+        scaled : whether ``change`` may make another unit of it; if not, the network refuses one
+        """
         source = self.read_channel(quantity, asked_by=repr(name))
         sensor = SensorDraft(name, source, change, unit or "", source)
         self.add_channel(name, sensor.unit, f"reading of {quantity}", sensor.reading)
-        self._channels[name] = replace(self._channels[name], reads=quantity)
+        self._channels[name] = replace(self._channels[name], reads=quantity, scaled=scaled)
         self._sources[name], self._sensors[name] = source, sensor
 
     def sensor(self, place: str, asked_by: str = "This") -> SensorDraft:

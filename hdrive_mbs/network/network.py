@@ -86,7 +86,7 @@ class Channel:
 
     slope : channel that holds its rate
     factors : of coordinates, where it is a lateral displacement; a run then has ``<name>_acceleration`` too
-    reads : channel that a sensor reads, where this is its reading
+    reads : channel that a sensor reads, where this is its reading;  scaled : whether that may have another unit
     """
 
     name: str
@@ -96,6 +96,7 @@ class Channel:
     slope: str | None = None
     factors: Mapping[str, float] | None = None
     reads: str | None = None
+    scaled: bool = True
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.loads.law import LoadLaw
 from hdrive_mbs.motors.characteristic import MotorCharacteristic
@@ -30,7 +32,7 @@ def drives(bench: Bench) -> tuple[Drive, ...]:
     """Inputs whose meaning is known by what their law makes: a SpeedProfile, a MotorCharacteristic or a LoadLaw."""
     found = []
     for column, item in bench.inputs.items():
-        made = item.law((0.0, 1.0), (0.0, 0.0))
+        made = item.law(np.array([0.0, 1.0]), np.zeros(2))
         kinds: tuple[tuple[type, Role], ...] = ((SpeedProfile, "speed"), (MotorCharacteristic, "torque"), (LoadLaw, "load"))
         for kind, role in kinds:
             if isinstance(made, kind):
