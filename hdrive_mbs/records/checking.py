@@ -11,12 +11,13 @@ from hdrive_mbs.records.checks.flat import flat_channels
 from hdrive_mbs.records.checks.numbers import not_finite
 from hdrive_mbs.records.checks.times import uneven_times
 from hdrive_mbs.records.checks.units import contradicting_units
+from hdrive_mbs.records.checks.wrapped import wrapped_angles
 from hdrive_mbs.records.finding import Finding
 
 if TYPE_CHECKING:
     from hdrive_mbs.records.record import Record
 
-CHECKS = (uneven_times, not_finite, contradicting_units, second_clocks, flat_channels)
+CHECKS = (uneven_times, not_finite, wrapped_angles, contradicting_units, second_clocks, flat_channels)
 """In the order in which their findings are listed."""
 
 

@@ -10,6 +10,7 @@ KINDS = {
     "gaps": "missing samples",
     "uneven": "steps of time that vary",
     "not_finite": "NaN, infinite or unreadable values",
+    "wrapped": "an angle that begins again after each turn",
     "units": "channels that contradict each other by a factor",
     "saturated": "flat at an extreme",
     "stuck": "constant while it should move",

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from hdrive_mbs.errors import ParameterError, RecordError, UnitError, unknown_place
+from hdrive_mbs.records.checks.wrapped import period_of, unwrapped
 from hdrive_mbs.records.finding import Finding
 from hdrive_mbs.records.record import Record
 from hdrive_mbs.records.si_units import conversion
@@ -18,6 +19,7 @@ WAYS = {
     "duplicates": ("first", "mean"),
     "gaps": ("interpolate", "keep"),
     "uneven": ("resample",),
+    "wrapped": ("unwrap", "keep"),
     "saturated": ("drop", "keep"),
     "stuck": ("drop", "keep"),
 }
@@ -36,6 +38,7 @@ def repaired(
     gaps: str | None = None,
     uneven: str | None = None,
     units: Mapping[str, str] | str | None = None,
+    wrapped: str | None = None,
     saturated: str | None = None,
     stuck: str | None = None,
     longest: int = LONGEST_RUN,
@@ -48,6 +51,7 @@ def repaired(
     gaps : "interpolate" (samples at the usual step on straight lines), "keep"
     uneven : "resample" at the usual step
     units : {channel: the unit its numbers are really in}, or "keep"
+    wrapped : "unwrap" angles that begin again after each turn, "keep"
     saturated, stuck : "drop" the channel, "keep"
     longest : samples in a row that may be interpolated
 
@@ -59,6 +63,7 @@ def repaired(
         "duplicates": duplicates,
         "gaps": gaps,
         "uneven": uneven,
+        "wrapped": wrapped,
         "saturated": saturated,
         "stuck": stuck,
     }
@@ -75,6 +80,8 @@ def repaired(
         record = _sorted(record)
     if duplicates is not None:
         record = _single(record, duplicates)
+    if wrapped == "unwrap":
+        record = _unwrapped(record)
     if gaps == "interpolate":
         record = _filled(record, longest)
     if uneven is not None and any(finding.kind == "uneven" and not finding.repaired for finding in record.findings):
@@ -117,6 +124,17 @@ def _with_units(record: Record, units: Mapping[str, str] | str) -> Record:
         record = _listed(
             record, "units", channel.name, f"its numbers were taken for {given} and converted to {channel.unit} (times {factor:.6g})"
         )
+    return record
+
+
+def _unwrapped(record: Record) -> Record:
+    for name in [finding.channel for finding in record.blocking if finding.kind == "wrapped"]:
+        channel = record[name]
+        period = period_of(channel.values)
+        assert period is not None
+        new = channel.replacing(values=unwrapped(channel.values, period))
+        record = record.with_channels(new if item is channel else item for item in record)
+        record = _listed(record, "wrapped", channel.name, f"goes on where it began again, by {period:.6g} rad each time")
     return record
 
 
