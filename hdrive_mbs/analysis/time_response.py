@@ -97,12 +97,26 @@ class Response(Result):
     def columns(self) -> dict[str, np.ndarray]:
         return {"time [s]": self.times} | {f"{name} [{self.units[name]}]": values for name, values in self.values.items()}
 
-    def to_csv(self, path: str | os.PathLike[str], channels: Sequence[str] | None = None) -> Path:
-        """Write histories as CSV (comma, point, one header line with units): of these channels, of all if not given."""
-        if channels is None:
+    def to_csv(self, path: str | os.PathLike[str], channels: Sequence[str] | None = None, *, step: float | None = None) -> Path:
+        """Write histories as CSV (comma, point, one header line with units): of these channels, of all if not given.
+
+        step : even distance of the samples [s], as a record needs it; the solver's own times if not given
+
+        Raises ParameterError for a step that is not between 0 and the duration of the run.
+        """
+        if channels is None and step is None:
             return super().to_csv(path)
-        histories = [self[name] for name in channels]
-        return write_csv(path, {"time [s]": self.times} | {f"{one.name} [{one.unit}]": one.values for one in histories})
+        names = self.channels if channels is None else channels
+        times = self.times if step is None else self._even(step)
+        values = {f"{name} [{self[name].unit}]": self[name].values if step is None else self.at(name, times) for name in names}
+        return write_csv(path, {"time [s]": times} | values)
+
+    def _even(self, step: float) -> FloatArray:
+        """Times from the first to the last, so far apart."""
+        first, span = float(self.times[0]), float(self.times[-1] - self.times[0])
+        if not 0.0 < step <= span:
+            raise ParameterError(f"step = {step:g} s: must be greater than 0 s and at most the duration of the run, {span:g} s.")
+        return np.asarray(first + step * np.arange(int(span / step * (1.0 + 1e-12)) + 1), np.float64)
 
     def summary(self) -> ChannelSummaries:
         """min, max, mean, rms and final value of each channel."""
@@ -143,7 +157,8 @@ def simulate(
         pulse in a function of your own set max_step yourself
     initial_speed : motor speed at t = 0 [rad/s]; every other place turns by its ideal ratio
     initial : values at t = 0 by channel name (``"load.angle"``, ``"motor.speed"``, a state), true sense
-    sample_step : record no more often than this [s]; 0 records every step of the solver
+    sample_step : record about once in so long [s], at the solver's own times, which are not even; 0 records every step.  ``at`` and
+        ``to_csv(step=...)`` give even ones
     estimate_error : run again with half the step (or 32 times tighter tolerances), return the finer
         run with its estimated error
     progress : True, False, or None for a bar when a terminal is attached and the run takes over 1 s
