@@ -14,7 +14,7 @@ SEPARABLE = 25.0
 EVEN = 1.5
 """A bin with less than this many times its share of the samples stands out from nothing."""
 REST = 1.26
-"""Times the noise (root mean square) from which what a claim leaves is spoken of: a mean square of FITS in verdict.py."""
+"""Times the noise (root mean square) from which what a claim leaves is spoken of: a mean square of 1.6."""
 ALL = 0.9
 """Share of the gap from which a place is said to explain nearly all of it."""
 WHY = (
