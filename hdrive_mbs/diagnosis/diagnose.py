@@ -38,7 +38,7 @@ from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import NONE, UNKNOWN, Claim, judge, left
-from hdrive_mbs.diagnosis.verify import begun, verified
+from hdrive_mbs.diagnosis.verify import verified
 from hdrive_mbs.diagnosis.whole_records import split_up
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
@@ -116,9 +116,9 @@ def diagnose(
         journal = Journal(folder, inputs)
     with Team(workers or 1, journal) as team:
         evidence = gather(coarse, fine, factors, known.groups, tried, team, report)
-        if watch is not None:
-            watch(evidence)
-        found = answer(known, chosen, evidence, team, started=started, pictures=pictures)
+    if watch is not None:
+        watch(evidence)
+    found = answer(known, chosen, evidence, started=started, pictures=pictures)
     notes = (*left_out(tried, evidence.single, step), *team.lost, *(() if journal is None else journal.said), *reported)
     driven = {name: item.path for name, item in known.inputs.items()}
     files = {record.name: {"source": record.source, "sha256": record.sha256} for record in chosen if record.sha256}
@@ -162,11 +162,10 @@ def factors_of(bench: Bench) -> tuple[Factor, ...]:
     return tuple(found)
 
 
-def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, team: Team, *, started: float, pictures: bool) -> Diagnosis:
+def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, started: float, pictures: bool) -> Diagnosis:
     """The answer that the fits of a case give."""
     claim = judge(left(evidence.null), evidence.singles, evidence.pairs)
     best = evidence.null if claim.fit is None or claim.kind == "unknown" else claim.fit.fitted
-    runner_up, winner = (begun(team, evidence.fine, some) for some in (_runner_up(evidence, best), [best]))
     improved = best.hypothesis.scene(bench.scene, best.z)
     notes: list[str] = []
     claimed = () if claim.kind in ("none", "unknown") or claim.fit is None else _causes(claim.fit, claim, improved, bench.groups)
@@ -176,7 +175,7 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, team: Te
     extras = pictures_of(evidence, best, [cause.at for cause in claimed]) if pictures else {}
     if claim.tied:
         extras["next_records"] = records_to_take(bench, records, evidence, claim, notes)
-    agreeing, differing = verified(team, [*winner, *runner_up])
+    agreeing, differing = verified(evidence.fine, _winner_and_runner_up(evidence, best))
     notes += agreeing
     notes += [f"{best.hypothesis.label}: the fit had not converged when it stopped." for _ in range(not best.converged)]
     return Diagnosis(
@@ -200,10 +199,10 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, team: Te
     )
 
 
-def _runner_up(evidence: Evidence, best: Fitted) -> list[Fitted]:
-    """The best of what was fitted to all samples besides what is answered, if anything was."""
+def _winner_and_runner_up(evidence: Evidence, best: Fitted) -> list[Fitted]:
+    """What is answered, and the best of what else was fitted to all samples."""
     others = [item for item in (*evidence.singles, *evidence.pairs) if item.fitted is not best]
-    return [item.fitted for item in sorted(others, key=lambda item: -item.log_odds)[:1]]
+    return [best, *(item.fitted for item in sorted(others, key=lambda item: -item.log_odds)[:1])]
 
 
 def _causes(found: Found, claim: Claim, improved: Scene, groups: Mapping[str, Sequence[str]]) -> tuple[Cause, ...]:

@@ -9,10 +9,7 @@ import numpy as np
 from hdrive_mbs.analysis.time_response import simulate
 from hdrive_mbs.diagnosis.driven import start_of
 from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.later import Later
-from hdrive_mbs.diagnosis.located import bends
 from hdrive_mbs.diagnosis.simulator import Simulator
-from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.engine.solvers import Trapezoidal
 from hdrive_mbs.errors import HdriveError
 
@@ -54,20 +51,14 @@ def _shortest(simulator: Simulator) -> int:
     return min(range(len(simulator.trials)), key=lambda k: simulator.trials[k].samples)
 
 
-def begun(team: Team, simulator: Simulator, fits: Sequence[Fitted]) -> list[Later]:
-    """Begin to hold fits against the engine, on rotor lines beside what this process does: there a run takes seconds."""
-    aside = bends(simulator)
-    return [team.begin(engine_difference, simulator, fitted) if aside else Later(engine_difference, simulator, fitted) for fitted in fits]
-
-
-def verified(team: Team, asked: Sequence[Later]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Of fits that were begun, how far the engine is from their compiled runs: notes, and warnings where that is too far."""
+def verified(simulator: Simulator, fits: Sequence[Fitted]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Of each fit, the answer first, how far the engine is from its compiled run: notes, and warnings where that is too far."""
     notes: list[str] = []
     warnings: list[str] = []
-    for later in asked:
-        simulator, label = later.shared, later.item.hypothesis.label
+    for fitted in fits:
+        label = fitted.hypothesis.label
         try:
-            difference = team.answer(later)
+            difference = engine_difference(simulator, fitted)
         except HdriveError as error:
             notes.append(f"Not verified on the engine, {label}: {error}")
             continue
