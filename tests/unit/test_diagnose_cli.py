@@ -208,7 +208,7 @@ def test_columns_are_mapped_and_given_units_on_the_command_line(asked: list[dict
 
 def test_a_column_that_is_mapped_leaves_the_columns_of_the_bench_in_place(asked: list[dict[str, Any]], tmp_path: Path) -> None:
     file = tmp_path / "a.csv"
-    rows = [f"{k * 1e-3:.3f},{k % 7},{k % 5},{k % 3}" for k in range(80)]
+    rows = [f"{k * 1e-3:.3f},{0.1 * k:.1f},{0.2 * k:.1f},{k % 3}" for k in range(80)]
     file.write_text("\n".join(["time [s],n_load [rad],motor_angle [rad],spare", *rows]) + "\n")
     words = ("--channel", "n_load=load_encoder", "--out", str(tmp_path / "out"))
     assert invoke(written(tmp_path, BENCH), "--records", str(file), *words).exit_code == 0
