@@ -19,7 +19,7 @@ import hdrive_mbs as hm
 from hdrive_mbs.quantities import Described
 
 GROUPS: dict[str, tuple[str, ...]] = {
-    "scenes": ("scene", "scene_file", "rotor_line_builder", "ross_file", "quantities", "quantity", "errors"),
+    "scenes": ("scene", "scene_file", "rotor_line_builder", "ross_file", "quantities", "conversions", "quantity", "errors"),
     "components": ("components",),
     "motors": ("motors",),
     "loads": ("loads",),
