@@ -50,4 +50,4 @@ def arcmin(value: float | Sequence[float] | FloatArray) -> float | FloatArray:
 
 def _many(value: float | Sequence[float] | FloatArray) -> float | FloatArray:
     """A list or tuple as an array; a number as it is."""
-    return value if isinstance(value, float | int | np.ndarray) else np.asarray(value, float)
+    return np.asarray(value, float) if isinstance(value, list | tuple | range) else value  # type: ignore[return-value]

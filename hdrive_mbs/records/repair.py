@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from hdrive_mbs.errors import ParameterError, RecordError, UnitError, unknown_place
-from hdrive_mbs.records.checks.wrapped import period_of, unwrapped
+from hdrive_mbs.records.checks.wrapped import seams_of, unwrapped
 from hdrive_mbs.records.finding import Finding
 from hdrive_mbs.records.record import Record
 from hdrive_mbs.records.si_units import conversion
@@ -72,8 +72,12 @@ def repaired(
             raise unknown_place(f"repair of {kind}", way, WAYS[kind], "repaired()")
     if not longest >= 0:
         raise ParameterError(f"longest = {longest} samples must be at least 0.")
+    kept = {(kind, "") for kind, way in asked.items() if way == "keep"} | ({("units", "")} if units == "keep" else set())
+    record = record.replacing(kept=record.kept | kept) if kept else record
     if units is not None:
         record = _with_units(record, units)
+    if wrapped == "unwrap":
+        record = _unwrapped(record)  # before anything is interpolated
     if not_finite is not None:
         record = _finite(record, not_finite, longest)
     if order is not None:
@@ -81,18 +85,17 @@ def repaired(
     if duplicates is not None:
         record = _single(record, duplicates)
     if wrapped == "unwrap":
-        record = _unwrapped(record)
+        record = _unwrapped(record)  # what shows once the samples are in order
     if gaps == "interpolate":
         record = _filled(record, longest)
     if uneven is not None and any(finding.kind == "uneven" and not finding.repaired for finding in record.findings):
-        step = record.step
+        step = _without_seams(record).step
         record = _listed(record.resampled(step), "uneven", "", f"brought to even steps of {step:.6g} s (monotone cubic)")
     for kind, way in (("saturated", saturated), ("stuck", stuck)):
         if way == "drop":
             for name in [finding.channel for finding in record.blocking if finding.kind == kind]:
                 record = _listed(record.without(name), kind, name, "the channel was left out")
-    kept = {(kind, "") for kind, way in asked.items() if way == "keep"} | ({("units", "")} if units == "keep" else set())
-    return record.replacing(kept=record.kept | kept) if kept else record
+    return record
 
 
 def _listed(record: Record, kind: str, channel: str, text: str, where: str = "") -> Record:
@@ -130,11 +133,22 @@ def _with_units(record: Record, units: Mapping[str, str] | str) -> Record:
 def _unwrapped(record: Record) -> Record:
     for name in [finding.channel for finding in record.blocking if finding.kind == "wrapped"]:
         channel = record[name]
-        period = period_of(channel.values)
-        assert period is not None
-        new = channel.replacing(values=unwrapped(channel.values, period))
+        seams = seams_of(channel.values)
+        assert seams is not None
+        new = channel.replacing(values=unwrapped(channel.values, seams.period))
         record = record.with_channels(new if item is channel else item for item in record)
-        record = _listed(record, "wrapped", channel.name, f"goes on where it began again, by {period:.6g} rad each time")
+        record = _listed(record, "wrapped", channel.name, f"goes on where it began again, by {seams.period:.6g} rad each time")
+    return record
+
+
+def _without_seams(record: Record) -> Record:
+    """The record itself.  Raises RecordError where what is interpolated would lie between the end of a turn and its beginning."""
+    for finding in record.blocking:
+        if finding.kind == "wrapped":
+            raise RecordError(
+                f"Record {record.name!r}: {finding.channel!r} begins again after each turn, and a line from the end of a turn to its "
+                "beginning is no measurement; add wrapped='unwrap', or wrapped='keep' where it really jumps."
+            )
     return record
 
 
@@ -151,7 +165,7 @@ def _finite(record: Record, way: str, longest: int) -> Record:
         if not good.any():
             raise RecordError(f"Record {record.name!r}: no sample is finite in all channels; leave out the channel that has no values.")
         return _listed(record.taking(good), "not_finite", "", f"{lost} samples were left out of all channels")
-    for channel in record:
+    for channel in _without_seams(record):
         bad = ~np.isfinite(channel.values)
         if not bad.any():
             continue
@@ -212,7 +226,7 @@ def _single(record: Record, way: str) -> Record:
 
 def _filled(record: Record, longest: int) -> Record:
     """Samples at the usual step in every gap."""
-    record.in_order("filling gaps")
+    _without_seams(record.in_order("filling gaps"))
     steps = np.diff(record.times)
     missing = np.maximum(np.round(steps / record.step).astype(int) - 1, 0) * (steps > 1.5 * record.step)
     if not missing.any():

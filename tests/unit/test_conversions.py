@@ -24,3 +24,9 @@ def test_numbers_stay_numbers_and_many_become_an_array(convert: Callable[[Any], 
         assert isinstance(found, np.ndarray)
         np.testing.assert_allclose(found, [0.0, wanted], rtol=1e-15)
     assert convert(int(given)) == alone
+
+
+@pytest.mark.parametrize("convert", [convert for convert, _, _ in SI])
+def test_text_is_no_number(convert: Callable[[Any], Any]) -> None:
+    with pytest.raises(TypeError):
+        convert("3")

@@ -191,3 +191,17 @@ def test_whirl_about_a_large_sag_fills_the_picture() -> None:
     assert ax.get_ylabel() == "y, counted from the axis [\u00b5m]"
     # without sag the axis is in the middle; the mean over 15.9 revolutions is off by a part of 1/100
     assert hm.plot(hm.orbit(response, "disc", about="mean")).get_xlim() == pytest.approx((-2.16, 2.16), rel=1e-2)
+
+
+def test_the_static_deflection_of_what_is_no_place_is_refused() -> None:
+    run = hm.run_up(jeffcott(constant(5.0)), 0.05, initial_speed=50.0)
+    own = hm.TimeHistory("key phasor", "rad", run.times, run["disc.angle"].values)
+    # the same circle whatever names the shaft and the place
+    assert hm.orbit(run, ("disc.x", "disc.y"), reference=own).forward == pytest.approx(hm.orbit(run, "disc").forward, rel=1e-4, nan_ok=True)
+    for place, reference, said in (
+        ("disc", own, "the shaft 'key phasor'"),
+        (("disc.x", "disc.y"), None, "'disc.x, disc.y'"),
+        ("bearing.force", None, "'bearing.force'"),
+    ):
+        with pytest.raises(hm.ParameterError, match=f"about = 'static': {said} is no place of the scene with a static deflection"):
+            hm.orbit(run, place, about="static", reference=reference)

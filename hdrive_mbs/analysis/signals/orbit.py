@@ -232,7 +232,12 @@ def _origin(response: Response | MeasuredChannels, place: str, about: str, z: np
     scene = response.scene
     if scene is None:
         raise AnalysisError("This response or record comes without its scene, so the static deflection is unknown; take about='mean'.")
-    ratio = spin_ratios(scene).get(scene.network().places[shaft.name.removesuffix(".angle")], 0.0) or 1.0
+    network, turning = scene.network(), shaft.name.removesuffix(".angle")
+    names = [channel.name for channel in network.channels]
+    if turning not in network.places or not {f"{place}.x", f"{place}.y"} <= set(names):
+        asked = f"the shaft {turning!r}" if turning not in network.places else repr(place)
+        raise ParameterError(f"about = 'static': {asked} is no place of the scene with a static deflection; take about='mean'.")
+    ratio = spin_ratios(scene).get(network.places[turning], 0.0) or 1.0
     known = getattr(response, "static_deflection", {})
     if place in known:
         return complex(rest_position(known[place], np.array([speed / ratio]))[0])

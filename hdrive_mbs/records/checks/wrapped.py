@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,27 +30,35 @@ TURN = 0.02
 """Relative deviation from 2 pi within which a period is a whole turn."""
 
 
+@dataclass(frozen=True, eq=False)
+class Seams:
+    """Where an angle begins again: the period [rad], and the samples before its jumps."""
+
+    period: float
+    before: npt.NDArray[np.intp]
+
+
 def wrapped_angles(record: Record) -> Iterator[Finding]:
     """Channels in rad that begin again."""
     if len(record) < 16 or not np.all(np.isfinite(record.times)) or not np.all(np.diff(record.times) > 0.0):
         return
     for channel in record:
-        period = period_of(channel.values) if channel.unit == "rad" else None
-        if period is None:
+        seams = seams_of(channel.values) if channel.unit == "rad" else None
+        if seams is None:
             continue
-        jumps = np.flatnonzero(np.abs(np.diff(channel.values)) > JUMP * period)
-        often = "once" if len(jumps) == 1 else f"{len(jumps)} times"
+        often = "once" if len(seams.before) == 1 else f"{len(seams.before)} times"
         text = (
-            f"{channel.name} begins again {often}, by {period:.6g} rad each time, while it goes on turning: an angle within one turn. "
-            "Use wrapped='unwrap', or wrapped='keep' where it really jumps"
+            f"{channel.name} begins again {often}, by {seams.period:.6g} rad each time, while it goes on turning: an angle within one "
+            "turn. Use wrapped='unwrap', or wrapped='keep' where it really jumps"
         )
-        where = f"t = {record.times[jumps[0]]:.6g} s"
+        where = f"t = {record.times[seams.before[0]]:.6g} s"
         yield Finding(kind="wrapped", channel=channel.name, where=where, blocks=True, text=text)
 
 
-def period_of(values: FloatArray) -> float | None:
-    """Period after which an angle begins again [rad]; None where it does not."""
-    finite = values[np.isfinite(values)]
+def seams_of(values: FloatArray) -> Seams | None:
+    """Where an angle begins again; None where it does not.  What is not finite is passed over."""
+    where = np.flatnonzero(np.isfinite(values))
+    finite = values[where]
     span = float(np.ptp(finite)) if len(finite) else 0.0
     if span == 0.0:
         return None
@@ -61,14 +70,14 @@ def period_of(values: FloatArray) -> float | None:
         return None
     if sizes[jumps].min() < ALIKE * sizes[jumps].max():
         return None
-    seams = np.split(jumps, np.flatnonzero(np.diff(jumps) > BESIDE) + 1)
-    motions = [_motion_at(seam, steps, jumps) for seam in seams]
-    period = float(np.median([sizes[seam[0]] + abs(motion) for seam, motion in zip(seams, motions, strict=True)]))
-    nets = [float(np.sum(np.sign(steps[seam]))) for seam in seams]  # noise may cross a seam several times; a spike goes there and back
+    groups = np.split(jumps, np.flatnonzero(np.diff(jumps) > BESIDE) + 1)
+    motions = [_motion_at(seam, steps, jumps) for seam in groups]
+    period = float(np.median([sizes[seam[0]] + abs(motion) for seam, motion in zip(groups, motions, strict=True)]))
+    nets = [float(np.sum(np.sign(steps[seam]))) for seam in groups]  # noise may cross a seam several times; a spike goes there and back
     against = [net * motion < 0.0 for net, motion in zip(nets, motions, strict=True) if net]
     if not against or np.mean(against) < AGAINST or not SPANNED[0] <= span / period <= SPANNED[1]:
         return None
-    return 2.0 * math.pi if abs(period / (2.0 * math.pi) - 1.0) < TURN else period
+    return Seams(2.0 * math.pi if abs(period / (2.0 * math.pi) - 1.0) < TURN else period, where[jumps])
 
 
 def _motion_at(seam: npt.NDArray[np.intp], steps: FloatArray, jumps: npt.NDArray[np.intp]) -> float:
