@@ -12,8 +12,8 @@ HOUSING = hm.Housing(
 )
 LINEAR = hm.LinearBearing.isotropic(radial=4e7, damping=300.0, axial=1e7, axial_damping=100.0, tilt=1e4, tilt_damping=1.0)
 POWER = hm.PowerBearing.isotropic(power_radial=1e15, radial=4e7, damping=300.0, axial=1e7, axial_damping=100.0, tilt=1e4, tilt_damping=1.0)
-ROUND, NEWTON = 1e-9, 1e-5
-"""Of the largest value: of sums of the same coordinates, and of accelerations of the engine, whose Newton steps end above that."""
+ROUND, NEWTON = 1e-12, 1e-10
+"""Of the largest value: of sums of the same coordinates, and the engine's Newton tolerance, to which forces and accelerations balance."""
 
 
 def line(law: hm.BearingLaw) -> hm.Scene:
@@ -38,7 +38,7 @@ def line(law: hm.BearingLaw) -> hm.Scene:
 def test_the_bearing_moves_the_housing_against_its_foundation(law: hm.BearingLaw, model: str) -> None:
     """F_foundation = k x + b x' + k_n x^3 and, where the housing is a body by itself, F_B - F_foundation = m_h x'', in every sample."""
     scene = line(law) if model == "full" else hm.with_bearings(line(law), "improved", highest_speed=400.0)
-    run = hm.run_up(scene, 0.12, initial_speed=300.0)
+    run = hm.simulate(scene, 0.05, initial_speed=300.0, solver=hm.Trapezoidal(step=1e-4, newton_tolerance=NEWTON))
     for key in "xy":
         force, ground = run[f"a.force_{key}"].values, run[f"a.foundation_force_{key}"].values
         motion, rate = run[f"a.housing.{key}"].values, run[f"a.housing.{key}_rate"].values

@@ -12,8 +12,10 @@ from hdrive_mbs.errors import AnalysisError, ParameterError, PlaceError
 
 SPEED, TURNS, COUNT = 100.0, 12.0, 12 * 200 + 1
 FORWARD, BACKWARD = 3e-5 * np.exp(0.4j), 1e-5 * np.exp(1.0j)
-TRACKED = 2e-4
-"""Of an amplitude, between samples joined by monotone cubics: of 200 samples a turn (2 pi/200)^2/8 = 1.2e-4 at most."""
+TRACKED = (2.0 * np.pi / 200.0) ** 2 / 8.0 * (abs(FORWARD) + abs(BACKWARD))
+"""Between two of 200 samples a turn, joined by monotone cubics, which lie no farther from a circle than its chord does."""
+EXACT = 1e-9
+"""Of sums over whole turns at the samples themselves, with rounding alone."""
 
 
 def measured(**columns: Any) -> hm.Record:
@@ -30,8 +32,8 @@ def measured(**columns: Any) -> hm.Record:
 def test_whirl_of_two_probes_is_split_into_forward_and_backward(plane: Any) -> None:
     tracked = hm.order_tracking(measured(), plane, reference="turn")
     assert tracked.two_sided
-    np.testing.assert_allclose(tracked.track(1.0, "forward"), FORWARD, atol=TRACKED * abs(FORWARD))
-    np.testing.assert_allclose(tracked.track(1.0, "backward"), BACKWARD, atol=TRACKED * abs(FORWARD))
+    np.testing.assert_allclose(tracked.track(1.0, "forward"), FORWARD, atol=TRACKED)
+    np.testing.assert_allclose(tracked.track(1.0, "backward"), BACKWARD, atol=TRACKED)
     orbit = hm.orbit(measured(), plane, reference="turn", about="mean")
     # at the samples themselves; sums over whole turns are exact
     assert (orbit.forward, orbit.backward) == pytest.approx((abs(FORWARD), abs(BACKWARD)), rel=1e-6)
@@ -44,11 +46,11 @@ def test_one_column_is_one_signal() -> None:
     alone = abs(FORWARD + np.conj(BACKWARD))
     record = measured()
     tracked = hm.order_tracking(record, "de_x", reference=record.history("turn"))
-    np.testing.assert_allclose(np.abs(tracked.track(1.0)), alone, rtol=TRACKED)
+    np.testing.assert_allclose(np.abs(tracked.track(1.0)), alone, rtol=0.0, atol=TRACKED)
     [peak] = hm.spectrum(record, "de_x").peaks(1)
-    assert (peak.frequency, peak.amplitude) == pytest.approx((SPEED, alone), rel=1e-3)
+    assert (peak.frequency, peak.amplitude) == pytest.approx((SPEED, alone), rel=EXACT)
     [order] = hm.order_spectrum(record, "de_x", against="turn").peaks(1)
-    assert (order.order, order.amplitude) == pytest.approx((1.0, alone), rel=1e-3)
+    assert (order.order, order.amplitude) == pytest.approx((1.0, alone), rel=EXACT)
 
 
 def test_a_column_that_measures_a_channel_of_the_scene_goes_by_both_names() -> None:
@@ -56,14 +58,14 @@ def test_a_column_that_measures_a_channel_of_the_scene_goes_by_both_names() -> N
     angle = hm.Measurement(name="turn", unit="rad", values=record["turn"].values, quantity="rotor_1.angle")
     mapped = hm.Record(name="bench", times=record.times, channels={**record.channels, "turn": angle})
     tracked = hm.order_tracking(mapped, "de")  # the only angle of the record
-    np.testing.assert_allclose(tracked.track(1.0, "forward"), FORWARD, atol=TRACKED * abs(FORWARD))
+    np.testing.assert_allclose(tracked.track(1.0, "forward"), FORWARD, atol=TRACKED)
     assert tracked.reference == "turn"
 
 
 def test_waterfall_and_spectrogram_have_both_senses() -> None:
     fall = hm.waterfall(measured(), "de", reference="turn", axis="order", pieces=2, length=5.0)
     for line, circle in ((1.0, FORWARD), (-1.0, BACKWARD)):
-        assert fall.amplitude[0, np.argmin(np.abs(fall.lines - line))] == pytest.approx(abs(circle), rel=1e-3)
+        assert fall.amplitude[0, np.argmin(np.abs(fall.lines - line))] == pytest.approx(abs(circle), rel=EXACT)
     assert hm.spectrogram(measured(), ("de_x", "de_y")).two_sided
 
 
