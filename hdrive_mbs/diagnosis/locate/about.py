@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -25,22 +24,21 @@ ComplexArray = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True, eq=False)
 class About:
-    """What the model was linearised about, and the residuals there."""
+    """What the model was linearised about, and the residuals there.
+
+    responses : of all places, by trial
+    """
 
     motions: Sequence[Motion]
     lines: Sequence[Line]
     spectra: Sequence[Spectra]
     likelihood: Likelihood
+    responses: Sequence[Response]
 
     @property
     def turning(self) -> bool:
         """Whether it is a line with lateral motion."""
         return any(motion.network.is_lateral for motion in self.motions)
-
-    @cached_property
-    def responses(self) -> tuple[Response, ...]:
-        """Of all places, by trial."""
-        return tuple(response(*item) for item in zip(self.motions, self.lines, self.spectra, strict=True))
 
     def transfer(self, name: str, k: int) -> ComplexArray | None:
         """Of a source in trial k: where the spin alone is watched, that of a torque at its place; None where it does not show."""
@@ -50,6 +48,13 @@ class About:
         """Work out the transfers of several sources together, in all trials; see ``OfSources.fetch``."""
         for k, item in enumerate(self.responses):
             item.of.fetch(list(dict.fromkeys(self.shown(name, k) for name in names)))
+
+    def narrowed(self, name: str) -> About:
+        """What is asked of a model of which one source is left, in half of the memory: this one lets go of all others too."""
+        for k, item in enumerate(self.responses):
+            item.of.narrow(self.shown(name, k))
+        bare = tuple(replace(item, whitening=np.empty((0, 0, 0, 0), complex)) for item in self.spectra)
+        return replace(self, spectra=bare, likelihood=Likelihood(bare, self.likelihood.at, self.likelihood.precision))
 
     def shown(self, name: str, k: int) -> str:
         """The source that shows a place in trial k."""
@@ -91,4 +96,5 @@ def linearised(
     offsets = made[0].values.shape[-1] - 1 - len(z)
     point = np.concatenate([z, np.zeros(offsets)])
     likelihood = Likelihood(made, point, np.concatenate([hypothesis.precisions, np.ones(offsets)]))
-    return About(motions, lines, made, likelihood)
+    responses = tuple(response(*item) for item in zip(motions, lines, made, strict=True))
+    return About(motions, lines, made, likelihood, responses)

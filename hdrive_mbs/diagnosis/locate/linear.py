@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -101,10 +101,11 @@ class Transfers:
 class _Modes:
     """Modes at one moment.
 
-    poles : 1/(s - lambda), (rates, modes);  read : C V, (channels, modes);  driven : V^-1 B, (modes, forces)
+    rates : s, (rates,);  values : lambda, (modes,);  read : C V, (channels, modes);  driven : V^-1 B, (modes, forces)
     """
 
-    poles: ComplexArray
+    rates: ComplexArray
+    values: ComplexArray
     read: ComplexArray
     driven: ComplexArray
 
@@ -112,7 +113,8 @@ class _Modes:
         """Shape (rates, channels, forces asked for)."""
         driven = self.driven[:, list(forces)]
         residues = self.read.T[:, :, None] * driven[:, None, :]
-        return np.asarray((self.poles @ residues.reshape(len(driven), -1)).reshape(len(self.poles), len(self.read), -1))
+        poles = 1.0 / (self.rates[:, None] - self.values)  # not kept: those of all moments of a rotor line are 20 MB
+        return np.asarray((poles @ residues.reshape(len(driven), -1)).reshape(len(poles), len(self.read), -1))
 
 
 def _modes(a: FloatArray, b: FloatArray, c: FloatArray, rates: ComplexArray) -> _Modes | None:
@@ -126,8 +128,8 @@ def _modes(a: FloatArray, b: FloatArray, c: FloatArray, rates: ComplexArray) -> 
         left = np.linalg.solve(vectors, b.astype(complex))
     except np.linalg.LinAlgError:
         return None
-    made = _Modes(1.0 / (rates[:, None] - values), c @ vectors, left)
-    found = _Modes(made.poles[check], made.read, left).transfer(range(b.shape[1]))
+    made = _Modes(rates, values, c @ vectors, left)
+    found = replace(made, rates=rates[check]).transfer(range(b.shape[1]))
     return None if np.max(np.abs(found - right)) > AGREES * np.max(np.abs(right)) else made
 
 

@@ -161,11 +161,11 @@ class Localiser:
         now, best = {k: tried[k] for k in contenders}, dict[int, _Tried]()
         for time in range(TIMES):
             for k, item in list(now.items()):
-                about = self._about_force(item)
-                if about is None:
+                again = self._again(item)
+                if again is None:
                     del now[k]
                     continue
-                now[k] = self._try(about, item.name, np.zeros(len(item.found.z)), rounds=2)
+                now[k] = again
                 if k not in best or now[k].gain > best[k].gain:
                     best[k] = now[k]
                 if time == TIMES - 1:
@@ -180,6 +180,14 @@ class Localiser:
         lost = min(1.0, max(item.gain for item in best.values()) / tried[0].gain)
         made = [best.get(k, replace(item, gain=item.gain * lost) if item.gain > 0.0 else item) for k, item in enumerate(tried)]
         return sorted(made, key=lambda item: -item.gain)
+
+    def _again(self, item: _Tried) -> _Tried | None:
+        """A place about the motion with its force; None where that cannot be run."""
+        about = self._about_force(item)
+        if about is None:
+            return None
+        found = self._try(about, item.name, np.zeros(len(item.found.z)), rounds=2)
+        return replace(found, about=about.narrowed(item.name))
 
     def _about_force(self, item: _Tried) -> About | None:
         """With the force of a place put into the model, and its parameters; None where that cannot be run.

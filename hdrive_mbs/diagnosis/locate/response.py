@@ -24,6 +24,32 @@ KEPT = 8
 """Sources of a trial whose transfers are kept: those of all at once take about a gigabyte on a rotor line."""
 
 
+class _Worked:
+    """How the transfers of a trial are worked out."""
+
+    def __init__(self, line: Line, spectra: Spectra) -> None:
+        self._whitening, self._windows = spectra.whitening, len(spectra.values)
+        rates = np.maximum(spectra.frequencies, SLOWEST * spectra.frequencies[1])
+        late = np.array([item.late * spectra.trial.every for item in spectra.trial.measured.values()])
+        self._delay = np.exp(1j * spectra.frequencies[:, None] * late)[..., None]
+        self._transfers = Transfers(line.linear, 1j * rates)
+        self._seen = None if line.observer is None else line.observer.noise_transfer(rates)
+
+    def acting(self, at: Sequence[int]) -> ComplexArray:
+        """Of forces of the line, shape (windows, bins, columns, forces)."""
+        transfer = self._transfers.of(at) * self._delay
+        if self._seen is not None:
+            transfer = of_windows(self._seen @ transfer, self._windows)
+        return np.asarray(self._whitening @ transfer)
+
+    def errors(self, at: Sequence[int]) -> ComplexArray:
+        """Of columns that err, shape (windows, bins, columns, those)."""
+        own = list(at)
+        if self._seen is None:
+            return np.ascontiguousarray(self._whitening[..., own])
+        return np.asarray(self._whitening @ of_windows(self._seen[..., own], self._windows))
+
+
 class OfSources(Mapping[str, ComplexArray]):
     """Source -> whitened transfer, shape (windows, bins, columns, d), worked out when it is asked for.
 
@@ -41,24 +67,14 @@ class OfSources(Mapping[str, ComplexArray]):
     ) -> None:
         self._columns = {name: at for name, at in columns.items() if name not in errors}
         self._errors, self._rotating = dict(errors), frozenset(rotating)
-        self._whitening, self._windows = spectra.whitening, len(spectra.values)
-        measured = spectra.trial.measured.values()
-        rates = np.maximum(spectra.frequencies, SLOWEST * spectra.frequencies[1])
-        late = np.array([item.late * spectra.trial.every for item in measured])
-        self._delay = np.exp(1j * spectra.frequencies[:, None] * late)[..., None]
-        self._transfers = Transfers(line.linear, 1j * rates)
-        self._seen = None if line.observer is None else line.observer.noise_transfer(rates)
-        shown = np.broadcast_to(np.eye(len(late), dtype=complex), (*spectra.values.shape[:2], len(late), len(late)))
-        if self._seen is not None:
-            shown = of_windows(self._seen, self._windows)
-        self._shown = self._whitening @ shown
+        self._worked: _Worked | None = _Worked(line, spectra)
         self._kept: dict[str, ComplexArray] = {}
 
     def __getitem__(self, name: str) -> ComplexArray:
-        if name in self._errors:
-            return np.asarray(self._shown[..., list(self._errors[name])])
-        if name not in self._columns:
+        if name not in self:
             raise KeyError(name)
+        if name in self._errors and name not in self._kept and self._worked is not None:
+            return self._worked.errors(self._errors[name])
         if name not in self._kept:
             self.fetch([name])
         return self._kept[name]
@@ -75,11 +91,9 @@ class OfSources(Mapping[str, ComplexArray]):
     def fetch(self, names: Sequence[str]) -> None:
         """Work out several together, at most KEPT, which is quicker than one by one; those that were asked for longest ago are dropped."""
         wanted = [name for name in names if name in self._columns and name not in self._kept]
-        at = [k for name in wanted for k in self._columns[name]]
-        transfer = self._transfers.of(at) * self._delay
-        if self._seen is not None:
-            transfer = of_windows(self._seen @ transfer, self._windows)
-        transfer = self._whitening @ transfer
+        if not wanted or self._worked is None:
+            return
+        transfer = self._worked.acting([k for name in wanted for k in self._columns[name]])
         first = 0
         for name in wanted:
             own = transfer[..., first : first + len(self._columns[name])]
@@ -87,6 +101,13 @@ class OfSources(Mapping[str, ComplexArray]):
             self._kept[name] = np.ascontiguousarray(own[..., 0::2] - 1j * own[..., 1::2] if name in self._rotating else own)
         while len(self._kept) > KEPT:
             self._kept.pop(next(iter(self._kept)))
+
+    def narrow(self, name: str) -> None:
+        """Keep one source alone, and nothing with which others are worked out: a tenth of a rotor line's memory."""
+        self._kept = {name: self[name]} if name in self else {}
+        self._columns = {key: at for key, at in self._columns.items() if key == name}
+        self._errors = {key: at for key, at in self._errors.items() if key == name}
+        self._worked = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,6 +20,7 @@ from hdrive_mbs.diagnosis.trial import Trial
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 Slopes = npt.NDArray[np.float32]
+Values = npt.NDArray[np.complex64]
 
 HIGHEST, HIGHEST_OF_ROTORS = 0.25, 0.16
 """Of the sample rate: frequencies above it are left out."""
@@ -36,7 +37,7 @@ class Spectra:
     """Short-time spectra of one trial in standard deviations of the noise.
 
     values : shape (windows, bins, columns of the trial, 1 + parameters): the residuals, then what a unit of each parameter
-        changes in them.  The squares add up to those of the samples below HIGHEST.
+        changes in them.  The squares add up to those of the samples below HIGHEST.  Seven digits are kept, far more than any noise leaves.
     frequencies : rad/s, (bins,);  bands : first bin of each band, an octave wide, or less for rotors
     whitening : what the spectrum of a residual is multiplied by, (windows, bins, columns, columns)
     window : samples;  starts : first sample of each window
@@ -44,7 +45,7 @@ class Spectra:
     """
 
     trial: Trial
-    values: ComplexArray
+    values: Values
     frequencies: FloatArray
     bands: npt.NDArray[np.int64]
     whitening: ComplexArray
@@ -163,9 +164,11 @@ def _of(motion: Motion, line: Line, rows: FloatArray, slopes: Slopes) -> Spectra
     if observer is None:
         late = np.array([trial.measured[column].late * trial.every for column in trial.columns])
         flat = np.fft.rfft(response, n=window)[:, :bins].T * np.exp(1j * frequencies[:, None] * late) * quiet
-        return Spectra(trial, values * quiet[..., None], frequencies, bands, flat[..., None] * np.eye(len(late)), window, starts, slopes)
+        seen = np.asarray(values * quiet[..., None], np.complex64)
+        return Spectra(trial, seen, frequencies, bands, flat[..., None] * np.eye(len(late)), window, starts, slopes)
     whitening = _against(observer, np.fft.rfft(response, n=FINER * window).T, quiet, trial.every)
-    return Spectra(trial, whitening @ values, frequencies, bands, whitening, window, starts, slopes)
+    seen = np.asarray(whitening @ values, np.complex64)
+    return Spectra(trial, seen, frequencies, bands, whitening, window, starts, slopes)
 
 
 def _against(observer: Observer, whitener: ComplexArray, quiet: FloatArray, every: float) -> ComplexArray:
