@@ -71,6 +71,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "components.load": ("Load",),
     "components.speed_controller": ("SpeedController",),
     "components.sensor": ("Sensor",),
+    "components.probe": ("Probe",),
     "flexsplines.law": ("StiffnessLaw",),
     "flexsplines.piecewise_linear": ("PiecewiseLinearStiffness",),
     "flexsplines.linear": ("LinearStiffness",),

@@ -73,6 +73,7 @@ from hdrive_mbs.components.inertia import Inertia as Inertia
 from hdrive_mbs.components.lateral_force import LateralForce as LateralForce
 from hdrive_mbs.components.load import Load as Load
 from hdrive_mbs.components.motor import Motor as Motor
+from hdrive_mbs.components.probe import Probe as Probe
 from hdrive_mbs.components.rigid_coupling import RigidCoupling as RigidCoupling
 from hdrive_mbs.components.rigid_section import RigidSection as RigidSection
 from hdrive_mbs.components.rotor import Rotor as Rotor

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 
 from hdrive_mbs.network.elements import AppliedTorque, Connection
 from hdrive_mbs.network.network import Network
@@ -106,19 +106,13 @@ def drive_ends(network: Network) -> tuple[str, ...]:
 
 
 def probes(network: Network) -> tuple[str, ...]:
-    """Sensors that read a displacement of a place in x or y, directly or through another sensor."""
-    return tuple(name for name in sensors(network) if is_displacement(root_quantity(name, network), network.places))
+    """Sensors that read a displacement of a place across the axis, directly or through another sensor."""
+    return tuple(name for name in sensors(network) if network.probed(name) is not None)
 
 
 def surfaces(network: Network) -> tuple[str, ...]:
-    """Places where sensors read a displacement in x or y."""
-    return tuple(dict.fromkeys(root_quantity(name, network).rpartition(".")[0] for name in probes(network)))
-
-
-def is_displacement(quantity: str, places: Collection[str]) -> bool:
-    """Whether a channel is the displacement of a place in x or y."""
-    place, _, direction = quantity.rpartition(".")
-    return direction in ("x", "y") and place in places
+    """Places where sensors read a displacement across the axis."""
+    return tuple(dict.fromkeys(seen.place for seen in map(network.probed, sensors(network)) if seen is not None))
 
 
 def root_quantity(name: str, network: Network) -> str:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar
 
 from hdrive_mbs.effects.effect import Effect
-from hdrive_mbs.effects.places import is_displacement
 from hdrive_mbs.errors import PlaceError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
@@ -20,7 +20,8 @@ class ProbeCrossTalk(Effect):
 
     seen = x + c y of the probe in x,  y + c x of the probe in y
 
-    A probe that is turned by a small angle a from x towards y has c = sin(a) in x, and -sin(a) in y.
+    A ``Probe`` at an angle of its own counts as one in x, with y a quarter turn on.  A probe that is turned by a small
+    angle a from x towards y has c = sin(a) in x, and -sin(a) in y.
 
     Source: geometry in first order; cross sensitivity of eddy-current probes (API Standard 670).  Leaves out the part
     that grows with the square of the displacement on a surface of small diameter.
@@ -36,16 +37,20 @@ class ProbeCrossTalk(Effect):
     def apply(self, draft: Draft, place: str, name: str) -> None:
         sensor = draft.sensor(place, type(self).__name__)
         quantity = draft.root_quantity(sensor)
-        station, _, direction = quantity.rpartition(".")
-        if not is_displacement(quantity, [station]):
+        looks = draft.probed(quantity)
+        if looks is None:
             raise PlaceError(
-                f"ProbeCrossTalk needs a sensor that reads the displacement of a place in x or y, but {place!r} reads {quantity!r}."
+                f"ProbeCrossTalk needs a sensor that reads the displacement of a place in x or y, or a Probe, but {place!r} reads"
+                f" {quantity!r}."
             )
-        across = draft.read_channel(f"{station}.{'y' if direction == 'x' else 'x'}", asked_by=repr(name))
+        x, y = (draft.read_channel(channel, asked_by=repr(name)) for channel in looks.channels)
+        cosine, sine = math.cos(looks.direction), math.sin(looks.direction)
+        if quantity == looks.channels[1]:
+            sine = -1.0  # x, and not -x, which is what lies a quarter turn on
         draft.keep_true_reading(sensor)
         before = sensor.seen
 
         def seen(moment: Moment) -> Value:
-            return before(moment) + self.share * across(moment)
+            return before(moment) + self.share * (cosine * y(moment) - sine * x(moment))
 
         sensor.seen = seen

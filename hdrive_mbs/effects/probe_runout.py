@@ -24,8 +24,8 @@ class ProbeRunout(Effect):
 
     seen = x + sum(A_n cos(n (f - d) + p_n)),  n = 1, 2, 3
 
-    with the twisted spin angle f of the place and the direction d of the sensor, 0 for x and a quarter turn for y: the y
-    sensor sees each spot a quarter turn later.  Mechanical (an eccentric or oval surface) or electrical (of the material).
+    with the twisted spin angle f of the place and the direction d of the sensor, 0 for x, a quarter turn for y, or the angle of a
+    ``Probe``: the y sensor sees each spot a quarter turn later.  Mechanical (an eccentric or oval surface) or electrical (of the material).
 
     Source: API Standard 670, runout; slow-roll compensation, Bently, Hatch, Fundamentals of Rotating Machinery
     Diagnostics (2002), ch. 11.  Leaves out scratches (high orders) and that the surface passes the probe at a
@@ -52,18 +52,20 @@ class ProbeRunout(Effect):
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         spin = moving_station(self, draft, place).stretch("phi")
-        reading = [sensor for sensor in draft.sensors if sensor.source.quantity in (f"{place}.x", f"{place}.y")]
-        if not reading:
-            probed = [sensor.source.quantity for sensor in draft.sensors if sensor.source.quantity.endswith((".x", ".y"))]
-            places = ", ".join(dict.fromkeys(quantity[:-2] for quantity in probed)) or "none"
-            raise PlaceError(f"ProbeRunout at {place!r} needs a Sensor that reads {place}.x or {place}.y. Places with one: {places}.")
-        for sensor in reading:
-            draft.keep_true_reading(sensor)
-            sensor.seen = self._seen(sensor, spin)
+        looking = [(sensor, draft.probed(sensor.source.quantity)) for sensor in draft.sensors]
+        known = list(dict.fromkeys(seen.place for _, seen in looking if seen is not None))
+        if place not in known:
+            places = ", ".join(known) or "none"
+            raise PlaceError(
+                f"ProbeRunout at {place!r} needs a Sensor that reads {place}.x or {place}.y, or a Probe there. Places with one: {places}."
+            )
+        for sensor, seen in looking:
+            if seen is not None and seen.place == place:
+                draft.keep_true_reading(sensor)
+                sensor.seen = self._seen(sensor, seen.direction, spin)
 
-    def _seen(self, sensor: SensorDraft, spin: dict[str, float]) -> Callable[[Moment], Value]:
+    def _seen(self, sensor: SensorDraft, direction: float, spin: dict[str, float]) -> Callable[[Moment], Value]:
         before = sensor.seen
-        direction = 0.5 * np.pi if sensor.source.quantity.endswith(".y") else 0.0
 
         def seen(moment: Moment) -> Value:
             angle = sum(factor * moment.angle(coordinate) for coordinate, factor in spin.items())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -12,6 +13,7 @@ from hdrive_mbs.network.draft_places import DraftPlaces
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Channel
 from hdrive_mbs.network.node import Node
+from hdrive_mbs.network.probed import Probed, probed
 from hdrive_mbs.network.sensor_draft import SensorDraft
 
 
@@ -29,6 +31,31 @@ class DraftChannels(DraftPlaces):
         """A named quantity of the result."""
         if name not in self._channels:
             self._channels[name] = Channel(name, unit, doc, read, slope)
+
+    def add_probed(self, name: str, seen: Probed, *, asked_by: str) -> None:
+        """A displacement [m] of a place of a rotor line along a direction of its own; unless it is relative its rate ``<name>_rate`` too.
+
+        The network refuses a place that has no such displacement with a PlaceError.
+        """
+        wanted = (
+            "a bearing with a housing, full or improved" if seen.relative else "a place of a rotor line: a rotor, a bearing, a drive, say"
+        )
+        self._add_turned(name, seen, "", asked_by, f"{seen.place!r} has to be {wanted}.")
+        if not seen.relative:
+            self._add_turned(f"{name}_rate", seen, "_rate", asked_by)
+            self._channels[name] = replace(self._channels[name], slope=f"{name}_rate")
+        self._channels[name] = replace(self._channels[name], probed=seen)
+
+    def _add_turned(self, name: str, seen: Probed, ending: str, asked_by: str, hint: str = "") -> None:
+        x, y = (self.read_channel(f"{channel}{ending}", asked_by=asked_by, hint=hint) for channel in seen.channels)
+        cosine, sine = math.cos(seen.direction), math.sin(seen.direction)
+        unit, of = ("m/s", "rate of the ") if ending else ("m", "")
+        self.add_channel(name, unit, f"{of}displacement of {seen}", lambda moment: cosine * x(moment) + sine * y(moment))
+
+    def probed(self, quantity: str) -> Probed | None:
+        """What a channel looks at; None for one that is no displacement across the axis."""
+        others = {channel.name: channel.probed for channel in self._channels.values() if channel.probed is not None}
+        return probed(quantity, {quantity.rpartition(".")[0], *(seen.place for seen in others.values())}, others)
 
     def has_channel(self, name: str) -> bool:
         """Whether a part has already added the quantity."""

@@ -14,6 +14,7 @@ from hdrive_mbs.expression import Value, gradient, record, variables
 from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, StateRate
 from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment, recording_moment
+from hdrive_mbs.network.probed import Probed, probed
 from hdrive_mbs.network.rigid_mass import RigidMass
 from hdrive_mbs.network.rigid_motion import forces_of_motion, kinetic_energy, mass_matrix
 from hdrive_mbs.network.running_rate import RunningRate
@@ -86,6 +87,7 @@ class Channel:
 
     slope : channel that holds its rate
     factors : of coordinates, where it is a lateral displacement; a run then has ``<name>_acceleration`` too
+    probed : what a displacement across the axis along a direction of its own looks at
     reads : channel that a sensor reads, where this is its reading;  scaled : whether that may have another unit
     """
 
@@ -97,6 +99,7 @@ class Channel:
     factors: Mapping[str, float] | None = None
     reads: str | None = None
     scaled: bool = True
+    probed: Probed | None = None
 
 
 @dataclass(frozen=True)
@@ -115,6 +118,13 @@ class Network:
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     members: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Kind (bearing, support, shaft) -> names of what of that kind effects may change."""
+
+    def probed(self, quantity: str) -> Probed | None:
+        """What a channel looks at, through sensors that read it; None for one that is no displacement of a place across the axis."""
+        source = {channel.name: channel.reads for channel in self.channels if channel.reads is not None}
+        while quantity in source:
+            quantity = source[quantity]
+        return probed(quantity, self.places, {channel.name: channel.probed for channel in self.channels if channel.probed is not None})
 
     def moment(self, time: Value, angles: Mapping[str, Value], speeds: Mapping[str, Value], states: Mapping[str, Value]) -> Moment:
         """A moment in which the prescribed motions are filled in."""

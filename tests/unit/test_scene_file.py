@@ -250,6 +250,7 @@ def rotor_scene(law: hm.BearingLaw) -> hm.Scene:
         "end": hm.Bearing(law=LINEAR),
         "gravity": hm.Gravity(y=-9.81),
         "probe": hm.Sensor(quantity="rotor.x"),
+        "turned": hm.Probe(at="rotor", angle=0.75),
     }
     return hm.Scene(name="rotor line", parts=parts, connections=[("drive", "bearing", "shaft", "rotor", "piece", "end")])
 

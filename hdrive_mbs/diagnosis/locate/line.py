@@ -119,7 +119,8 @@ def _reads(trial: Trial, network: Network, column: str) -> str:
 def _lateral(trial: Trial, network: Network) -> bool:
     """Whether a column shows how something moves across the shaft."""
     names = tuple(body.name for body in network.bodies if body.lateral)
-    return any(_reads(trial, network, column).startswith(names) for column in trial.columns)
+    read = [_reads(trial, network, column) for column in trial.columns]
+    return any(name.startswith(names) or network.probed(name) is not None for name in read)
 
 
 def _pairs(trial: Trial, network: Network) -> dict[str, tuple[str, ...]]:
@@ -127,6 +128,7 @@ def _pairs(trial: Trial, network: Network) -> dict[str, tuple[str, ...]]:
     found: dict[str, list[str]] = {}
     for column in trial.columns:
         read = _reads(trial, network, column)
-        if read != trial.measured[column].channel and read.endswith((".x", ".y")):
-            found.setdefault(f"{read[:-2]}.sensors", []).append(column)
+        seen = network.probed(read) if read != trial.measured[column].channel else None
+        if seen is not None:
+            found.setdefault(f"{seen.place}.sensors", []).append(column)
     return {at: tuple(columns) for at, columns in found.items() if len(columns) > 1}
