@@ -404,3 +404,24 @@ def test_a_vibration_is_seen_in_a_first_look_whatever_its_direction() -> None:
     along_x_alone = [item for item in begun if item.added[-1].effect.direction == 0.0]  # type: ignore[attr-defined]
     assert gained(along_x_alone) < 0.1 * above_noise
     assert gained(begun) > 0.5 * above_noise
+
+
+def test_a_place_that_is_kept_alone_shows_what_it_showed() -> None:
+    about = localiser(along_x(rotor_1=1.0))._about
+    name = next(name for name in about.responses[0].of if about.at(name) == "rotor_1")
+    others = [other for other in about.responses[0].of if other != name]
+    before = about.transfer(name, 0)
+    assert before is not None
+    shown, left = before.copy(), about.likelihood.residuals(0, np.zeros(len(about.likelihood.at)))
+    kept = about.narrowed(name)
+    np.testing.assert_array_equal(kept.transfer(name, 0), shown)
+    np.testing.assert_array_equal(kept.likelihood.residuals(0, np.zeros(len(kept.likelihood.at))), left)
+    assert len(others) > 10
+    assert list(kept.responses[0].of) == [name]
+    assert all(other not in kept.responses[0].of for other in others)
+    assert kept.at(name) == "rotor_1"
+    of_sensor = localiser()._about
+    sensor = "rotor_1.sensors"
+    read = of_sensor.transfer(sensor, 0)
+    assert read is not None
+    np.testing.assert_array_equal(of_sensor.narrowed(sensor).transfer(sensor, 0), read)

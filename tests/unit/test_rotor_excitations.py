@@ -811,7 +811,8 @@ def test_gain_and_cross_talk_of_a_probe() -> None:
 def test_probe_faults_need_a_probe() -> None:
     scene = probed(hm.SensorGain(error=0.1), "probe_x")
     with pytest.raises(
-        PlaceError, match=r"ProbeRunout at 'bearing' needs a Sensor that reads bearing\.x or bearing\.y, or a Probe there\. Places with one: disc"
+        PlaceError,
+        match=r"ProbeRunout at 'bearing' needs a Sensor that reads bearing\.x or bearing\.y, or a Probe there\. Places with one: disc",
     ):
         scene.with_effect(hm.ProbeRunout(once=1e-6), at="bearing").network()
     encoder = jeffcott(parts={"encoder": hm.Sensor(quantity="disc.angle")})
