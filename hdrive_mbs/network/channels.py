@@ -27,6 +27,32 @@ class Reading:
             raise SceneError(f"{self.asked_by} reads {self.quantity!r} before the network is finished.")
         return self.channel.read(moment)
 
+    def connect(self, known: Mapping[str, Channel], sources: Mapping[str, Reading]) -> None:
+        """Look it up among the channels, those with a source being read from it."""
+        self.channel = known[self.quantity]
+
+
+@dataclass
+class SpeedReading(Reading):
+    """A speed [rad/s], counted as the place turns forward that it is the speed of, through sensors that read it.
+
+    sense : of that place, -1 where it turns backward in the true sense
+    """
+
+    sense: int = 1
+
+    def __call__(self, moment: Moment) -> Value:
+        return self.sense * super().__call__(moment)
+
+    def connect(self, known: Mapping[str, Channel], sources: Mapping[str, Reading]) -> None:
+        super().connect(known, sources)
+        unit, root = known[self.quantity].unit, self.quantity
+        if unit != "rad/s":
+            raise ParameterError(f"{self.asked_by} needs a speed in rad/s, but {self.quantity!r} is in {unit!r}. {self.hint}")
+        while root in sources:
+            root = sources[root].quantity
+        self.sense = known[root].sense
+
 
 def resolved_channels(channels: Sequence[Channel], readings: Sequence[Reading], sources: Mapping[str, Reading]) -> tuple[Channel, ...]:
     """The channels with those that read others connected to them."""
@@ -52,7 +78,7 @@ def resolved_channels(channels: Sequence[Channel], readings: Sequence[Reading], 
                 )
             known[link] = replace(known[link], unit=known[link].unit or read.unit)
     for reading in readings:
-        reading.channel = known[reading.quantity]
+        reading.connect(known, sources)
     return tuple(known.values())
 
 
@@ -64,8 +90,8 @@ def body_channels(nodes: Mapping[str, Node], flanges: Mapping[str, str]) -> list
             continue  # the ends of a shaft are the bodies that they are joined to
         node = nodes[node_name]
         channels += [
-            Channel(f"{place}.angle", "rad", f"angle of {place}, true sense", _angle(node), f"{place}.speed"),
-            Channel(f"{place}.speed", "rad/s", f"speed of {place}, true sense", _speed(node), f"{place}.acceleration"),
+            Channel(f"{place}.angle", "rad", f"angle of {place}, true sense", _angle(node), f"{place}.speed", sense=node.sense),
+            Channel(f"{place}.speed", "rad/s", f"speed of {place}, true sense", _speed(node), f"{place}.acceleration", sense=node.sense),
         ]
     return channels
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from hdrive_mbs.errors import PlaceError, unknown_place
 from hdrive_mbs.expression import Value
-from hdrive_mbs.network.channels import Reading
+from hdrive_mbs.network.channels import Reading, SpeedReading
 from hdrive_mbs.network.draft_places import DraftPlaces
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Channel
@@ -67,6 +67,12 @@ class DraftChannels(DraftPlaces):
         The network refuses an unknown name with a PlaceError that lists the channels and says the hint.
         """
         reading = Reading(quantity, asked_by, hint)
+        self._readings.append(reading)
+        return reading
+
+    def read_speed(self, quantity: str, *, asked_by: str, hint: str = "") -> Reading:
+        """A speed [rad/s] by name, forward, like ``read_channel``: of a place, or a sensor that reads one."""
+        reading = SpeedReading(quantity, asked_by, hint)
         self._readings.append(reading)
         return reading
 

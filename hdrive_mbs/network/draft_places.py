@@ -30,6 +30,10 @@ class DraftPlaces:
             raise PlaceError(f"{asked_by} acts on a rotating body, but {place!r} is a connection. Bodies: {', '.join(known)}.")
         raise unknown_place("body", place, known)
 
+    def has_body(self, place: str) -> bool:
+        """Whether there is a rotating place of that name."""
+        return place in self._flanges
+
     def connection(self, place: str, asked_by: str = "This", flanges: tuple[str, ...] = ()) -> ConnectionDraft:
         """The connection of that name (a shaft, the mesh of a gear), which must have these flanges.
 

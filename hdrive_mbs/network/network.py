@@ -87,6 +87,7 @@ class Channel:
 
     slope : channel that holds its rate
     factors : of coordinates, where it is a lateral displacement; a run then has ``<name>_acceleration`` too
+    sense : -1 for an angle or speed of a place that turns backward while a motor drives it forward
     probed : what a displacement across the axis along a direction of its own looks at
     reads : channel that a sensor reads, where this is its reading;  scaled : whether that may have another unit
     """
@@ -99,6 +100,7 @@ class Channel:
     factors: Mapping[str, float] | None = None
     reads: str | None = None
     scaled: bool = True
+    sense: int = 1
     probed: Probed | None = None
 
 

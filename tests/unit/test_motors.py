@@ -356,6 +356,54 @@ def test_feedback_from_the_output_counts_forward_although_the_output_turns_backw
     assert result.speeds["motor"][-1] == pytest.approx(100.0, abs=0.5)
 
 
+def watching(effect: hm.Effect | None = None, **sensor: Any) -> hm.Scene:
+    """The controlled train with a tachometer in its loop."""
+    tacho = hm.Sensor(**({"quantity": "motor.speed"} | sensor))
+    base = controlled(feedback="tacho")
+    scene = hm.Scene(name="watching", parts={**base.parts, "tacho": tacho}, connections=base.connections)
+    return scene if effect is None else scene.with_effect(effect, at="tacho")
+
+
+def test_a_controller_with_a_true_sensor_is_one_that_reads_the_motor() -> None:
+    plain, _ = run_on_engine(controlled(), 0.05)
+    read, how = run_on_engine(watching(), 0.05)
+    assert how["controller.integral (state equation)"] == "symbolic"
+    for name, speed in plain.speeds.items():
+        np.testing.assert_array_equal(read.speeds[name], speed)
+
+
+def test_a_false_gain_of_the_sensor_moves_the_speed_that_the_loop_holds() -> None:
+    # steady: (1 + e) w = w_ref; the error of the loop decays within 1 s as that of a servo
+    result, _ = run_on_engine(watching(hm.SensorGain(error=0.05)), 1.5)
+    plain, _ = run_on_engine(controlled(), 1.5)
+    assert plain.speeds["motor"][-1] == pytest.approx(TARGET, rel=1e-3)
+    assert result.speeds["motor"][-1] == pytest.approx(TARGET / 1.05, rel=1e-3)
+
+
+def test_a_sensor_at_the_output_counts_forward_in_the_loop() -> None:
+    gains = {"proportional_gain": 2.0, "integral_gain": 10.0, "reference": SpeedRamp(start=0.0, end=1.0, duration=0.2)}
+    changes = {"load.torque": ConstantTorque(value=20.0), "gear.damping": 100.0, "gear.flexspline_inertia": 5e-3}
+    found = []
+    for feedback in ("load", "copy"):
+        base = controlled(feedback=feedback, **gains)
+        parts = {**base.parts, "copy": hm.Sensor(quantity="tacho"), "tacho": hm.Sensor(quantity="load.speed")}
+        result, _ = run_on_engine(hm.Scene(name="output", parts=parts, connections=base.connections).replacing(changes), 0.3)
+        found.append(result.speeds["load"])
+    np.testing.assert_array_equal(found[0], found[1])
+    assert found[0][-1] > 0.3
+
+
+def test_a_feedback_that_is_no_speed_is_refused() -> None:
+    with pytest.raises(
+        ParameterError, match=r"'controller' needs a speed in rad/s, but 'tacho' is in 'rad'\. Its feedback has to be a place"
+    ):
+        watching(quantity="motor.angle").network()
+    with pytest.raises(ParameterError, match=r"'controller' needs a speed in rad/s, but 'tacho' is in 'V'"):
+        watching(gain=0.01, unit="V").network()
+    with pytest.raises(PlaceError, match=r"'controller' reads 'tach', which .* Its feedback has to be a place that turns, or a sensor"):
+        controlled(feedback="tach").network()
+
+
 def test_a_commanded_motor_without_a_controller_says_what_is_missing() -> None:
     with pytest.raises(PlaceError, match=r"CommandedMotor of 'motor' reads 'motor\.command'.*Add a part SpeedController\(motor='motor'"):
         train(motor=CommandedMotor(torque_limit=LIMIT)).network()
