@@ -48,7 +48,7 @@ SECOND, MORE, COMPARABLE = 25.0, 0.36, 0.1
 """What a second cause needs besides the first: log odds over it, and either the share of the logarithm of what the first
 leaves that it has to take away, or log odds that are this share of the first one's.  Laws that are nearly right always
 leave something that a second cause can nibble at: of the 60 cases of our own rotor sets 9 to 12, opened, patches beside a single cause took
-0.34 of the logarithm at most, true second causes 0.38 (c14 of the twelfth, whose laws are not exact) and 0.99: little to rest a bound on."""
+0.34 of the logarithm at most, true second causes 0.38 (c14 of the twelfth, whose laws are not exact) and 0.99: few cases to rest on."""
 TEMPERATURE = 3.0
 """By which log odds beyond those that a claim needs are divided before they become probabilities: laws are never quite right."""
 PAIR = 20.0
