@@ -92,6 +92,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "motors.profiles.constant": ("ConstantSpeed",),
     "motors.profiles.ramp": ("SpeedRamp",),
     "motors.profiles.angle_table": ("AngleTable",),
+    "motors.profiles.smoothed": ("smoothed_motion",),
     "motors.profiles.table": ("SpeedTable",),
     "loads.law": ("LoadLaw",),
     "loads.constant": ("ConstantTorque",),

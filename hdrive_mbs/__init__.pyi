@@ -258,6 +258,7 @@ from hdrive_mbs.motors.profiles.angle_table import AngleTable as AngleTable
 from hdrive_mbs.motors.profiles.constant import ConstantSpeed as ConstantSpeed
 from hdrive_mbs.motors.profiles.profile import SpeedProfile as SpeedProfile
 from hdrive_mbs.motors.profiles.ramp import SpeedRamp as SpeedRamp
+from hdrive_mbs.motors.profiles.smoothed import smoothed_motion as smoothed_motion
 from hdrive_mbs.motors.profiles.table import SpeedTable as SpeedTable
 from hdrive_mbs.motors.servo import ServoMotor as ServoMotor
 from hdrive_mbs.motors.torque_history import TorqueHistory as TorqueHistory

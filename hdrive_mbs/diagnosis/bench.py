@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.starting import with_the_rest
 from hdrive_mbs.diagnosis.trial import FloatArray, Trial
 from hdrive_mbs.errors import ParameterError, RecordError, unknown_place
 from hdrive_mbs.network.network import Network
@@ -61,7 +62,10 @@ class Bench:
     scene : as the data sheets say, its inputs replaceable
     knowledge : parameters that are not exact, by a name of your own
     measured : columns to compare;  inputs : columns that drive the scene
-    angles, speeds : of bodies at the start of every record; 0 if not given
+    angles, speeds : of bodies at the start of every record, forward [rad, rad/s]; the other bodies turn with the first of them by their
+        ideal ratios, or with a place whose motion is given, and all start at 0 where nothing is
+    run_in : time before a record that is run with its inputs [s] and not compared: for records that begin in rotation, whose line whirls
+        already.  Inputs get times that count from its beginning, and so do the times of an answer
     settled : whether a rotor line starts every record where its weight and other steady forces let it rest, as a machine does;
         False for records of a model that starts undeflected
     together : parameters that are suspected together, by a name for the group; every other one is suspected alone
@@ -80,8 +84,11 @@ class Bench:
     together: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     searched: tuple[str, ...] = ()
     settled: bool = True
+    run_in: float = 0.0
 
     def __post_init__(self) -> None:
+        if not 0.0 <= self.run_in < math.inf:
+            raise ParameterError(f"run_in = {self.run_in:g} s: must be at least 0 s and finite.")
         known = self.scene.parameters()
         for name, item in self.knowledge.items():
             for path in item.paths:
@@ -112,18 +119,21 @@ class Bench:
         columns = self.columns_of(record)
         times = record.times
         every = even_step(record)
-        moments = times - times[0]
-        changes = {item.path: item.law(moments, columns[name]) for name, item in self.inputs.items()}
+        before = round(self.run_in / every)
+        moments = times - times[0] + before * every
+        scene = self.scene.replacing({item.path: item.law(moments, columns[name]) for name, item in self.inputs.items()})
+        angles, speeds = with_the_rest(scene.network(), self.angles, self.speeds)
+        unseen = np.full(before, np.nan)
         return (
             Trial(
                 name=record.name,
-                scene=self.scene.replacing(changes),
+                scene=scene,
                 every=every,
-                columns={name: columns[name] for name in self.measured if name in columns},
+                columns={name: np.concatenate((unseen, columns[name])) for name in self.measured if name in columns},
                 measured={name: item for name, item in self.measured.items() if name in columns},
-                held_out=held_out(len(times), record.name),
-                angles=self.angles,
-                speeds=self.speeds,
+                held_out=np.concatenate((np.zeros(before, bool), held_out(len(times), record.name))),
+                angles=angles,
+                speeds=speeds,
                 settled=self._settled,
             ),
         )
@@ -137,17 +147,18 @@ class Bench:
         if unknown or not self.inputs:
             known = ", ".join(self.inputs) or "none; a bench that is driven in another way overrides planned()"
             raise ParameterError(f"Plan {plan.name!r}: inputs {', '.join(unknown) or '(none)'}; this bench has {known}.")
-        changes = {item.path: item.law(plan.times, plan.sampled(name)) for name, item in self.inputs.items()}
+        scene = self.scene.replacing({item.path: item.law(plan.times, plan.sampled(name)) for name, item in self.inputs.items()})
+        angles, speeds = with_the_rest(scene.network(), self.angles, self.speeds)
         return (
             Trial(
                 name=plan.name,
-                scene=self.scene.replacing(changes),
+                scene=scene,
                 every=plan.every,
                 columns={name: np.zeros(plan.samples) for name in self.measured},
                 measured=self.measured,
                 held_out=np.zeros(plan.samples, bool),
-                angles=self.angles,
-                speeds=self.speeds,
+                angles=angles,
+                speeds=speeds,
                 settled=self._settled,
             ),
         )

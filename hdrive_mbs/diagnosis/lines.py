@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import gc
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -110,7 +110,7 @@ class Lines:
             if of != k or trial.scene is not scene:
                 lines = [self._taking(k, line, hypothesis, point) for line, point in zip(lines, points, strict=True)]
             if trial.settled and resting is None:
-                resting = _resting(lines)
+                resting = _resting(lines, trial.angles)
             rest = resting if trial.settled and resting is not None else [{} for _ in lines]
             found[k] = [None if line is None else Start(line, {**angles, **trial.angles}) for line, angles in zip(lines, rest, strict=True)]
         return found
@@ -169,8 +169,9 @@ def _collector_at_rest() -> Iterator[None]:
             gc.enable()
 
 
-def _resting(lines: Sequence[CompiledLine | None]) -> list[dict[str, float]]:
-    found = iter(equilibria([line for line in lines if line is not None]))
+def _resting(lines: Sequence[CompiledLine | None], angles: Mapping[str, float]) -> list[dict[str, float]]:
+    """Of each line, with spins at the angles at which the trial starts: a place that is turned to an angle would twist the others."""
+    found = iter(equilibria([line for line in lines if line is not None], angles=angles))
     return [{} if line is None else next(found) for line in lines]
 
 

@@ -97,7 +97,7 @@ def lateral_sources(network: Network, driven: Mapping[str, str]) -> tuple[Source
             both = force | {"theta": {f"{station}.theta": 1.0}, "psi": {f"{station}.psi": -1.0}}
             found += [Source(at, both, "N", "with a couple"), Source(at, both, "N", "with a rotating couple", rotating=True)]
     for bearing in network.members.get("bearing", ()):
-        inner = _between(bearing, names)
+        inner = _between(bearing, network.places.get(bearing, bearing), names)
         if inner:
             found += [Source(f"{bearing}.law", inner, "N"), Source(f"{bearing}.law", inner, "N", "rotating", rotating=True)]
         if f"{bearing}.housing" in stations:
@@ -137,10 +137,13 @@ def turning_sources(network: Network, driven: Mapping[str, str]) -> tuple[Source
     return tuple(found.values())
 
 
-def _between(bearing: str, names: Collection[str]) -> dict[str, dict[str, float]]:
-    """A force between ring and housing; empty where the bearing has no housing of its own."""
+def _between(bearing: str, ring: str, names: Collection[str]) -> dict[str, dict[str, float]]:
+    """A force between ring and housing; empty where the bearing has no housing of its own.
+
+    ring : the station that the ring belongs to: another part that is joined to it may have named that
+    """
     if f"{bearing}.housing.x" in names:
-        return {d: {f"{bearing}.{d}": 1.0, f"{bearing}.housing.{d}": -1.0} for d in "xy"}
+        return {d: {f"{ring}.{d}": 1.0, f"{bearing}.housing.{d}": -1.0} for d in "xy"}
     if f"{bearing}.across_x" in names:
         return {d: {f"{bearing}.across_{d}": 1.0} for d in "xy"}
     return {}

@@ -9,13 +9,13 @@ import numpy as np
 
 from hdrive_mbs.expression import Pieces, Value
 from hdrive_mbs.motors.profiles.profile import SpeedProfile
-from hdrive_mbs.quantities import table
+from hdrive_mbs.quantities import option, table
 from hdrive_mbs.tables import check_table
 
 
 @dataclass(frozen=True, kw_only=True)
 class AngleTable(SpeedProfile):
-    """Cubic spline through (time, angle), counted from t = 0: angle, speed and acceleration are continuous.
+    """Cubic spline through (time, angle), counted from t = 0 unless they are absolute: angle, speed and acceleration are continuous.
 
     Beyond the table the speed stays as it is at its ends, where the acceleration is zero.
 
@@ -25,13 +25,16 @@ class AngleTable(SpeedProfile):
 
     times: tuple[float, ...] = table("s", "times, rising")
     angles: tuple[float, ...] = table("rad", "angles at these times")
+    absolute: bool = option(
+        "whether the angles count as given, where a mark on the shaft stands; a train then has to start there", default=False
+    )
 
     def check(self) -> None:
         check_table(self, "times", "angles")
 
     def angle(self, time: Value) -> Value:
         pieces = self._pieces
-        return pieces(time) - float(pieces(0.0))
+        return pieces(time) if self.absolute else pieces(time) - float(pieces(0.0))
 
     @cached_property
     def _pieces(self) -> Pieces:
