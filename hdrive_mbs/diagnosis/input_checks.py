@@ -252,5 +252,5 @@ def _check_start(trial: Trial, column: str, simulated: FloatArray, units: Mappin
         raise RecordError(
             f"Record {trial.name!r} does not start like the scene: {column!r} begins at {real:.4g} rad/s, the nominal scene at"
             f" {model:.4g} rad/s. Give its start with Bench(speeds={{...}}, angles={{...}}), take record.between(start, end) from rest on,"
-            " or, of a sensor of unknown zero, Measured(..., offset=...)."
+            " hold the drive to its measured motion (hm.smoothed_motion), or, of a sensor of unknown zero, Measured(..., offset=...)."
         )
