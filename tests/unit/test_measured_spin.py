@@ -96,6 +96,17 @@ def test_a_speed_is_integrated_from_the_first_sample_on() -> None:
     assert motion.angle(0.0) == pytest.approx(-0.25 * float(motion.speed(0.0)), rel=1e-9)
 
 
+def test_a_gap_is_bridged_by_pieces_that_are_longer() -> None:
+    times = np.arange(0.0, 2.0, 1e-3)
+    seen = truth(times) + 1e-3 * np.random.default_rng(8).standard_normal(len(times))
+    seen[(times > 0.8) & (times < 0.95)] = np.nan
+    motion = hm.smoothed_motion(times, seen)
+    inner = times[100:-100]
+    assert np.max(np.abs(motion.angle(inner) - truth(inner))) < 2e-3
+    with pytest.raises(ParameterError, match=r"knots = 0\.01 s: values are missing for longer than that"):
+        hm.smoothed_motion(times, seen, knots=0.01)
+
+
 def test_what_cannot_be_smoothed_is_refused() -> None:
     times = np.arange(0.0, 1.0, 1e-3)
     with pytest.raises(ParameterError, match=r"begins again after each turn: numpy\.unwrap"):

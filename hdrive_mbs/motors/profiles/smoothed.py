@@ -50,7 +50,7 @@ def smoothed_motion(times: npt.ArrayLike, values: npt.ArrayLike, *, of: str = "a
     at, seen = at[there], seen[there]
     if len(at) < FEWEST or not np.all(np.diff(at) > 0.0):
         raise ParameterError(f"A smoothed motion needs at least {FEWEST} values at rising times; there are {len(at)}.")
-    if of == "angle" and _is_wrapped(seen):
+    if of == "angle" and _is_wrapped(at, seen):
         raise ParameterError(
             "The angle begins again after each turn: numpy.unwrap it before, or read it with repair={'wrapped': 'unwrap'}."
         )
@@ -60,15 +60,20 @@ def smoothed_motion(times: npt.ArrayLike, values: npt.ArrayLike, *, of: str = "a
     most = max(1, min(MOST, int(length / closest)))
     pieces = _fewest_that_fit(at, seen, most) if knots is None else max(1, round(length / knots))
     spline, _ = _fitted(at, seen, pieces)
+    if spline is None:
+        raise ParameterError(
+            f"knots = {length / pieces:.3g} s: values are missing for longer than that; leave knots out, or cut the record."
+        )
     motion = spline.antiderivative() if of == "speed" else spline
     points = np.linspace(at[0], at[-1], max(FINER * pieces, POINTS) + 1)
     angles = [float(angle) for angle in motion(points)]
     return AngleTable(times=tuple(points.tolist()), angles=tuple(angles), absolute=True)
 
 
-def _is_wrapped(angles: FloatArray) -> bool:
-    """Whether the largest steps are backward ones of a turn or half of one, in either sense."""
-    steps = np.diff(angles)
+def _is_wrapped(at: FloatArray, angles: FloatArray) -> bool:
+    """Whether a step differs from the usual one by half a turn and by four times its own size."""
+    apart = np.diff(at)
+    steps = np.diff(angles) * float(np.median(apart)) / apart  # over a gap as much as it has turned by in one step
     typical = float(np.median(steps))
     return bool(np.any(np.abs(steps - typical) > max(math.pi, 4.0 * abs(typical))))
 
@@ -81,10 +86,13 @@ def _fewest_that_fit(at: FloatArray, seen: FloatArray, most: int) -> int:
     return min(tried, key=lambda pieces: _fitted(at, seen, pieces)[1])
 
 
-def _fitted(at: FloatArray, seen: FloatArray, pieces: int) -> tuple[BSpline, float]:
+def _fitted(at: FloatArray, seen: FloatArray, pieces: int) -> tuple[BSpline | None, float]:
+    """The spline with so many pieces and its criterion; none where values are missing for longer than a piece."""
     from scipy.interpolate import make_lsq_spline
 
     inner = np.linspace(at[0], at[-1], pieces + 1)
+    if np.any(np.histogram(at, inner)[0] < 1):
+        return None, math.inf
     spline = make_lsq_spline(at, seen, np.concatenate(([inner[0]] * 3, inner, [inner[-1]] * 3)), k=3)
     free = len(at) - (pieces + 3)
     left = seen - spline(at)
