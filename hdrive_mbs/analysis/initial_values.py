@@ -9,12 +9,13 @@ import numpy as np
 
 from hdrive_mbs.errors import ParameterError, unknown_place
 from hdrive_mbs.network.network import Body, Network
+from hdrive_mbs.network.starting import angles_with_the_rest
 
 
 def initial_values(network: Network, speed: float, given: Mapping[str, float]) -> dict[str, dict[str, float]]:
     """Forward angles, speeds and states at t = 0."""
     speed = finite_number("initial_speed", speed, "rad/s")
-    angles = {body.name: 0.0 for body in network.bodies}
+    angles = {body.name: 0.0 for body in network.bodies} | angles_with_the_rest(network, {})  # of a motion that begins at an angle
     speeds = {body.name: body.sense * body.ratio * speed for body in network.bodies}
     states = {state.name: state.initial for state in network.states}
     bodies = {body.name: body for body in network.bodies}

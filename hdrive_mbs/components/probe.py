@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from hdrive_mbs.components.component import Component
-from hdrive_mbs.components.sensor import Sensor
-from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.components.reader import Reader
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.probed import Probed
 from hdrive_mbs.quantities import option, parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class Probe(Component):
+class Probe(Reader):
     """reading = gain r + offset, rounded to whole steps of the resolution;  r = x cos(a) + y sin(a)
 
     with the displacement x, y of the place and the direction a from the shaft to the probe, from x towards y: of two probes 45
@@ -31,19 +29,12 @@ class Probe(Component):
     relative: bool = option(
         "whether it sits on the housing of the bearing there: r is then that of the ring less the housing", default=False
     )
-    gain: float = parameter("1", "reading per displacement", default=1.0)
-    offset: float = parameter("1", "reading at zero, in units of the reading", default=0.0)
-    resolution: float = parameter("1", "step of the reading, in units of the reading; 0 for none", default=0.0, low=0.0)
-    unit: str | None = option("unit of the reading where the gain changes it (m if not given)", default=None)
 
-    def check(self) -> None:
-        if self.gain == 0.0:
-            raise ParameterError(f"Probe.gain = 0 reads nothing of {self.at!r}; give the reading per displacement.")
-
-    def _sensor(self, quantity: str) -> Sensor:
-        return Sensor(quantity=quantity, gain=self.gain, offset=self.offset, resolution=self.resolution, unit=self.unit)
+    @property
+    def seen(self) -> str:
+        return self.at
 
     def build(self, name: str, draft: Draft) -> None:
         quantity = f"{name}.displacement"
         draft.add_probed(quantity, Probed(self.at, self.angle, self.relative), asked_by=repr(name))
-        self._sensor(quantity).build(name, draft)
+        self.read(name, quantity, draft)

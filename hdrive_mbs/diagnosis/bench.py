@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hdrive_mbs.diagnosis.measured import Measured
-from hdrive_mbs.diagnosis.starting import with_the_rest
 from hdrive_mbs.diagnosis.trial import FloatArray, Trial
 from hdrive_mbs.errors import ParameterError, RecordError, unknown_place
 from hdrive_mbs.network.network import Network
+from hdrive_mbs.network.starting import angles_with_the_rest, speeds_with_the_rest
 from hdrive_mbs.records.record import Record
 from hdrive_mbs.scene import Scene
 
@@ -122,7 +122,7 @@ class Bench:
         before = round(self.run_in / every)
         moments = times - times[0] + before * every
         scene = self.scene.replacing({item.path: item.law(moments, columns[name]) for name, item in self.inputs.items()})
-        angles, speeds = with_the_rest(scene.network(), self.angles, self.speeds)
+        network = scene.network()
         unseen = np.full(before, np.nan)
         return (
             Trial(
@@ -132,8 +132,8 @@ class Bench:
                 columns={name: np.concatenate((unseen, columns[name])) for name in self.measured if name in columns},
                 measured={name: item for name, item in self.measured.items() if name in columns},
                 held_out=np.concatenate((np.zeros(before, bool), held_out(len(times), record.name))),
-                angles=angles,
-                speeds=speeds,
+                angles=angles_with_the_rest(network, self.angles),
+                speeds=speeds_with_the_rest(network, self.speeds),
                 settled=self._settled,
             ),
         )
@@ -148,7 +148,7 @@ class Bench:
             known = ", ".join(self.inputs) or "none; a bench that is driven in another way overrides planned()"
             raise ParameterError(f"Plan {plan.name!r}: inputs {', '.join(unknown) or '(none)'}; this bench has {known}.")
         scene = self.scene.replacing({item.path: item.law(plan.times, plan.sampled(name)) for name, item in self.inputs.items()})
-        angles, speeds = with_the_rest(scene.network(), self.angles, self.speeds)
+        network = scene.network()
         return (
             Trial(
                 name=plan.name,
@@ -157,8 +157,8 @@ class Bench:
                 columns={name: np.zeros(plan.samples) for name in self.measured},
                 measured=self.measured,
                 held_out=np.zeros(plan.samples, bool),
-                angles=angles,
-                speeds=speeds,
+                angles=angles_with_the_rest(network, self.angles),
+                speeds=speeds_with_the_rest(network, self.speeds),
                 settled=self._settled,
             ),
         )

@@ -63,7 +63,7 @@ def sensors(network: Network) -> tuple[str, ...]:
 
 def angle_sensors(network: Network) -> tuple[str, ...]:
     """Sensors that read the angle of a place, directly or through another sensor."""
-    return tuple(name for name in sensors(network) if root_quantity(name, network).endswith(".angle"))
+    return tuple(name for name in sensors(network) if network.root_quantity(name).endswith(".angle"))
 
 
 # -- on rotor lines ------------------------------------------------------------------------------------
@@ -113,14 +113,6 @@ def probes(network: Network) -> tuple[str, ...]:
 def surfaces(network: Network) -> tuple[str, ...]:
     """Places where sensors read a displacement across the axis."""
     return tuple(dict.fromkeys(seen.place for seen in map(network.probed, sensors(network)) if seen is not None))
-
-
-def root_quantity(name: str, network: Network) -> str:
-    """The quantity that a sensor reads, through other sensors."""
-    source = {channel.name: channel.reads for channel in network.channels if channel.reads is not None}
-    while name in source:
-        name = source[name]
-    return name
 
 
 PLACES: Mapping[str, Callable[[Network], tuple[str, ...]]] = {

@@ -121,12 +121,20 @@ class Network:
     members: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Kind (bearing, support, shaft) -> names of what of that kind effects may change."""
 
+    def root_quantity(self, name: str) -> str:
+        """The quantity that a sensor reads, through other sensors; that of anything else is its own."""
+        source = {channel.name: channel.reads for channel in self.channels if channel.reads is not None}
+        while name in source:
+            name = source[name]
+        return name
+
     def probed(self, quantity: str) -> Probed | None:
         """What a channel looks at, through sensors that read it; None for one that is no displacement of a place across the axis."""
-        source = {channel.name: channel.reads for channel in self.channels if channel.reads is not None}
-        while quantity in source:
-            quantity = source[quantity]
-        return probed(quantity, self.places, {channel.name: channel.probed for channel in self.channels if channel.probed is not None})
+        return probed(
+            self.root_quantity(quantity),
+            self.places,
+            {channel.name: channel.probed for channel in self.channels if channel.probed is not None},
+        )
 
     def moment(self, time: Value, angles: Mapping[str, Value], speeds: Mapping[str, Value], states: Mapping[str, Value]) -> Moment:
         """A moment in which the prescribed motions are filled in."""

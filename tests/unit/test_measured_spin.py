@@ -14,8 +14,8 @@ from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.locate.sources import lateral_sources
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.simulator import Simulator
-from hdrive_mbs.diagnosis.starting import with_the_rest
 from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.network.starting import angles_with_the_rest, speeds_with_the_rest
 from models import drive_bench
 
 SPEED, STEP, EVERY = 200.0, 5e-5, 5e-4
@@ -126,22 +126,29 @@ def test_what_cannot_be_smoothed_is_refused() -> None:
 
 def test_bodies_that_are_not_named_turn_with_the_one_that_is() -> None:
     network = drive_bench.build().network()
-    angles, speeds = with_the_rest(network, {}, {"motor": 100.0})
+    speeds = speeds_with_the_rest(network, {"motor": 100.0})
     ratios = {body.name: abs(body.ratio) for body in network.bodies}
     assert speeds == pytest.approx({name: 100.0 * ratio for name, ratio in ratios.items()})
-    assert angles == {}
-    assert with_the_rest(network, {}, {}) == ({}, {})
+    assert speeds_with_the_rest(network, {}) == angles_with_the_rest(network, {}) == {}
     given = dict.fromkeys(ratios, 1.0)
-    assert with_the_rest(network, {}, given)[1] == given
+    assert speeds_with_the_rest(network, given) == given
 
 
 def test_bodies_turn_with_a_place_whose_motion_is_given() -> None:
     times = np.arange(0.0, 1.0, 1e-3)
     scene = line().replacing({"drive.characteristic": held(times, 2.0 + 50.0 * times)})
-    angles, speeds = with_the_rest(scene.network(), {}, {"disc": 49.0})
+    angles, speeds = angles_with_the_rest(scene.network(), {}), speeds_with_the_rest(scene.network(), {"disc": 49.0})
     assert speeds["nde"] == pytest.approx(50.0, rel=1e-9)
     assert speeds["disc"] == 49.0  # as it was said
     assert angles == pytest.approx({"disc": 2.0, "nde": 2.0}, rel=1e-9)
+
+
+def test_a_run_starts_turned_to_where_its_motion_does() -> None:
+    times = np.arange(0.0, 1.0, 1e-3)
+    scene = line().replacing({"drive.characteristic": held(times, 2.0 + 50.0 * times)})
+    run = hm.simulate(scene, 0.01, initial_speed=50.0)
+    assert run["disc.angle"].values[0] == pytest.approx(2.0, rel=1e-9)
+    assert np.max(np.abs(run["s1.twist"].values)) < 1e-5  # 2 rad where it starts at 0
 
 
 def test_a_line_that_starts_at_an_angle_rests_as_one_that_starts_at_none() -> None:

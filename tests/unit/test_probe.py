@@ -100,7 +100,7 @@ def test_a_probe_where_nothing_moves_across_is_refused() -> None:
         PlaceError, match=r"'eye' reads 'disk\.x', which this scene does not have\. 'disk' has to be a place of a rotor line"
     ):
         watched(eye=hm.Probe(at="disk", angle=0.0)).network()
-    with pytest.raises(ParameterError, match=r"Probe\.gain = 0 reads nothing of 'disc'; give the reading per displacement"):
+    with pytest.raises(ParameterError, match=r"Probe\.gain = 0 reads nothing of 'disc'; give the reading per quantity"):
         hm.Probe(at="disc", angle=0.0, gain=0.0)
     with pytest.raises(ParameterError, match=r"Probe lacks what has no default: .*angle"):
         hm.Probe(at="disc")

@@ -50,11 +50,11 @@ class About:
             item.of.fetch(list(dict.fromkeys(self.shown(name, k) for name in names)))
 
     def narrowed(self, name: str) -> About:
-        """What is asked of a model of which one source is left, in half of the memory: this one lets go of all others too."""
-        for k, item in enumerate(self.responses):
-            item.of.narrow(self.shown(name, k))
+        """What is asked of a model of which one source is left, in about half of the memory."""
+        responses = [replace(item, of=item.of.narrowed(self.shown(name, k))) for k, item in enumerate(self.responses)]
         bare = tuple(replace(item, whitening=np.empty((0, 0, 0, 0), complex)) for item in self.spectra)
-        return replace(self, spectra=bare, likelihood=Likelihood(bare, self.likelihood.at, self.likelihood.precision))
+        likelihood = Likelihood(bare, self.likelihood.at, self.likelihood.precision)
+        return replace(self, spectra=bare, likelihood=likelihood, responses=responses)
 
     def shown(self, name: str, k: int) -> str:
         """The source that shows a place in trial k."""

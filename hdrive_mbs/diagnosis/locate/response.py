@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -102,12 +103,14 @@ class OfSources(Mapping[str, ComplexArray]):
         while len(self._kept) > KEPT:
             self._kept.pop(next(iter(self._kept)))
 
-    def narrow(self, name: str) -> None:
-        """Keep one source alone, and nothing with which others are worked out: a tenth of a rotor line's memory."""
-        self._kept = {name: self[name]} if name in self else {}
-        self._columns = {key: at for key, at in self._columns.items() if key == name}
-        self._errors = {key: at for key, at in self._errors.items() if key == name}
-        self._worked = None
+    def narrowed(self, name: str) -> OfSources:
+        """One source alone, without anything with which others are worked out."""
+        made = copy.copy(self)
+        made._kept = {name: self[name]} if name in self else {}
+        made._columns = {key: at for key, at in self._columns.items() if key == name}
+        made._errors = {key: at for key, at in self._errors.items() if key == name}
+        made._worked = None
+        return made
 
 
 @dataclass(frozen=True, eq=False)

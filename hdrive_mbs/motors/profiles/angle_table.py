@@ -26,7 +26,7 @@ class AngleTable(SpeedProfile):
     times: tuple[float, ...] = table("s", "times, rising")
     angles: tuple[float, ...] = table("rad", "angles at these times")
     absolute: bool = option(
-        "whether the angles count as given, where a mark on the shaft stands; a train then has to start there", default=False
+        "whether the angles count as given, from a mark on the shaft, and a train starts turned to the first", default=False
     )
 
     def check(self) -> None:

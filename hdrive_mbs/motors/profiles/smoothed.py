@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.motors.profiles.angle_table import AngleTable
+from hdrive_mbs.records.checks.wrapped import seams_of
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
@@ -50,7 +51,7 @@ def smoothed_motion(times: npt.ArrayLike, values: npt.ArrayLike, *, of: str = "a
     at, seen = at[there], seen[there]
     if len(at) < FEWEST or not np.all(np.diff(at) > 0.0):
         raise ParameterError(f"A smoothed motion needs at least {FEWEST} values at rising times; there are {len(at)}.")
-    if of == "angle" and _is_wrapped(at, seen):
+    if of == "angle" and seams_of(seen) is not None:
         raise ParameterError(
             "The angle begins again after each turn: numpy.unwrap it before, or read it with repair={'wrapped': 'unwrap'}."
         )
@@ -68,14 +69,6 @@ def smoothed_motion(times: npt.ArrayLike, values: npt.ArrayLike, *, of: str = "a
     points = np.linspace(at[0], at[-1], max(FINER * pieces, POINTS) + 1)
     angles = [float(angle) for angle in motion(points)]
     return AngleTable(times=tuple(points.tolist()), angles=tuple(angles), absolute=True)
-
-
-def _is_wrapped(at: FloatArray, angles: FloatArray) -> bool:
-    """Whether a step differs from the usual one by half a turn and by four times its own size."""
-    apart = np.diff(at)
-    steps = np.diff(angles) * float(np.median(apart)) / apart  # over a gap as much as it has turned by in one step
-    typical = float(np.median(steps))
-    return bool(np.any(np.abs(steps - typical) > max(math.pi, 4.0 * abs(typical))))
 
 
 def _fewest_that_fit(at: FloatArray, seen: FloatArray, most: int) -> int:
