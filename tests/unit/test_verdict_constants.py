@@ -1,0 +1,71 @@
+"""Two constants of the verdict against the stored fits of the opened rotor sets that they were drawn from.
+
+Figures are those of the committed raw fits: what both halves of the samples leave.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from benchmarks.withheld.calibrate import Stored, rows_with, stored
+from benchmarks.withheld.calibration import expected_error, log_loss
+from benchmarks.withheld.case_score import Row, shares
+from hdrive_mbs.diagnosis.verdict import MORE, OTHER_AT_FIT
+
+OWN = Path(__file__).parents[2] / "benchmarks" / "withheld" / "own"
+SETS = (9, 10, 11, 12)
+
+
+@pytest.fixture(scope="module")
+def cases() -> list[Stored]:
+    return [case for n in SETS for case in stored(OWN / f"rotor_{n}" / "raw", OWN / f"rotor_{n}" / "truths.json")]
+
+
+def seconds(cases: list[Stored]) -> tuple[list[float], list[float]]:
+    """Shares of the logarithm of what the first cause leaves that a second one takes: patches beside a single cause, and second causes."""
+    patches, true = [], []
+    for case in cases:
+        if case.raw["pairs"]:
+            before, after = (math.sqrt(item["fit"] * item["held"]) for item in (case.raw["singles"][0], case.raw["pairs"][0]))
+            two = len(case.labels["truth"]) == 2
+            found = {item["label"][0] for item in case.raw["pairs"][0]["added"]}
+            share = 1.0 - math.log(max(after, 1.0)) / math.log(before)
+            if not two:
+                patches.append(share)
+            elif found == {item["effect"] for item in case.labels["truth"]} and after < before:
+                true.append(share)
+    return patches, true
+
+
+def counted(rows: list[Row]) -> dict[str, tuple[int, int]]:
+    return {name: (item.right, item.of) for name, item in shares(rows).items()}
+
+
+def test_patches_take_less_than_a_second_cause_has_to_and_second_causes_more(cases: list[Stored]) -> None:
+    patches, true = seconds(cases)
+    assert len(cases) == 60
+    assert max(patches) < MORE < min(true)
+    assert round(max(patches), 2) == 0.34
+    assert sorted(round(share, 2) for share in true) == [0.38, 0.99, 1.0, 1.0, 1.0]
+
+
+def test_the_verdict_of_now_on_these_sets_is_what_the_page_says(cases: list[Stored]) -> None:
+    rows = rows_with(cases)
+    found = counted(rows)
+    assert (found["effect right"], found["place right"], found["nulls kept"]) == ((56, 60), (44, 51), (9, 9))
+    assert (found["unknown caught"], found["both of two"]) == ((8, 8), (5, 8))
+    assert counted(rows_with(cases, MORE=0.5))["effect right"] == (55, 60)
+    sure = [row.confidence for row in rows], [row.effect for row in rows]
+    assert round(expected_error(*sure), 3) == 0.042
+
+
+def test_none_of_these_is_as_probable_as_costs_least(cases: list[Stored]) -> None:
+    loss = {}
+    for value in (-4.5, -3.5, OTHER_AT_FIT, -2.5, -1.5):
+        rows = rows_with(cases, OTHER_AT_FIT=value)
+        loss[value] = log_loss([row.confidence for row in rows], [row.effect for row in rows])
+    assert loss[OTHER_AT_FIT] < min(loss[-4.5], loss[-3.5], loss[-1.5])
+    assert loss[OTHER_AT_FIT] == pytest.approx(loss[-2.5], abs=2e-3)
