@@ -58,8 +58,10 @@ def closer(item: Candidate) -> Candidate | None:
     def between(starts: tuple[Added, ...]) -> tuple[Added, ...]:
         for name in fields:
             values = sorted({float(getattr(start.effect, name)) for start in starts})
+            low, high = shapes[name].typical or (values[0], values[-1])
             alike = {start.effect.replacing(**{name: values[0]}): start for start in starts}  # starts that differ in the rest
-            effects = [effect.replacing(**{name: value}) for effect in alike for value in _filled(values)]
+            wide = _filled(sorted({min(low, values[0]), *values, max(high, values[-1])}))
+            effects = [effect.replacing(**{name: value}) for effect in alike for value in wide]
             starts = tuple(Added(effect, starts[0].at, starts[0].name) for effect in effects)
         return starts
 

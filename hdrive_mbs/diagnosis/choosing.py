@@ -6,6 +6,7 @@ import math
 from collections.abc import Collection, Sequence
 
 from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.nearly import nearly_right
 from hdrive_mbs.diagnosis.screening import Look
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect
 from hdrive_mbs.diagnosis.tasks import Found, is_hopeless
@@ -19,8 +20,6 @@ SHARE = 0.08
 SEEN, PART = 1.02, 0.2
 """Mean square of the samples of a search above which a faint gap is not noise (they are 50,000 and more), and the share of the logarithm
 of the nominal model's that may stay."""
-SMALL = 0.03
-"""Of the logarithm of the nominal model's mean square: left by a law that is nearly right beside a cause that is strong."""
 
 
 def worth(before: float, costs: Sequence[float], limits: tuple[int, int]) -> int:
@@ -88,12 +87,8 @@ def beyond(fitted: Fitted, leading: Fitted) -> bool:
 
 
 def enough(base: Fitted, least: float) -> float:
-    """Mean square below which nothing is left that is worth a search: some value, or what a law that is nearly right leaves.
-
-    A law never is what the machine does.  Of the practice cases, rotor-p03 leaves 1.2 to 1.5 of 4,100 with the right law at the right
-    place, another plant's clearance.
-    """
-    return max(least, float(base.chi_fit**SMALL))
+    """Mean square below which nothing is left that is worth a search: some value, or what a law that is nearly right leaves."""
+    return max(least, nearly_right(base.chi_fit))
 
 
 def leaves(after: float, base: Fitted, least: float) -> bool:

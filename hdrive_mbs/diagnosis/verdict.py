@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.nearly import nearly_right
 from hdrive_mbs.diagnosis.suspects import Label
 from hdrive_mbs.diagnosis.tasks import Found
 
@@ -49,6 +50,10 @@ SECOND, MORE, COMPARABLE = 25.0, 0.36, 0.1
 leaves that it has to take away, or log odds that are this share of the first one's.  Laws that are nearly right always
 leave something that a second cause can nibble at: of the 60 cases of our own rotor sets 9 to 12, opened, patches beside a single cause took
 0.34 of the logarithm at most, true second causes 0.38 (c14 of the twelfth, whose laws are not exact) and 0.99: few cases to rest on."""
+LITTLE, MOST = 1.1, 0.75
+"""Mean square left by the first cause up to which a second one has to take MOST of its logarithm: more beside a strong cause, of which
+a law that is nearly right leaves more (``nearly_right``).  A mass that swings on a support took nearly all of the 1.05 that a bow left,
+and a keyway, which was not there, 0.57 (c03 of our own thirteenth rotor set, opened)."""
 TEMPERATURE = 3.0
 """By which log odds beyond those that a claim needs are divided before they become probabilities: laws are never quite right."""
 PAIR = 20.0
@@ -90,7 +95,7 @@ def judge(null_misfit: float, found: Sequence[Found], pairs: Sequence[Found] = (
         kind = "none" if null_misfit <= CLEAN else "unknown"
         return Claim(kind, None, (), _probabilities(found, None, null_misfit, False))
     chosen = best
-    if pairs and _needed(best, pairs[0]):
+    if pairs and _needed(best, pairs[0], null_misfit):
         chosen = pairs[0]
     holds = stands(chosen, null_misfit) or 1.0 - left(best.fitted) / null_misfit >= LARGE
     probabilities = _probabilities(found, chosen, null_misfit, holds)
@@ -150,13 +155,20 @@ def left(fitted: Fitted) -> float:
     return math.sqrt(fitted.chi_fit * fitted.chi_held)
 
 
-def _needed(first: Found, pair: Found) -> bool:
+def _needed(first: Found, pair: Found, null_misfit: float) -> bool:
     """Whether a second cause is more than a patch on the law of the first."""
     gain = pair.log_odds - first.log_odds
     before, after = left(first.fitted), left(pair.fitted)
     if gain <= SECOND or before <= NOISE or after >= before:
         return False
+    if before <= max(LITTLE, nearly_right(null_misfit)):
+        return takes_most(before, after)
     return math.log(max(after, 1.0)) < (1.0 - MORE) * math.log(before) or gain > COMPARABLE * first.log_odds
+
+
+def takes_most(before: float, after: float) -> bool:
+    """Whether a second cause takes most of the little that the first one leaves, which another law of the first might as well."""
+    return math.log(max(after, 1.0)) < (1.0 - MOST) * math.log(before)
 
 
 def kind_of(found: Found) -> str:

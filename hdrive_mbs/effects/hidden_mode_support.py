@@ -48,7 +48,10 @@ class HiddenModeSupport(Effect):
     signature: ClassVar[str] = (
         "one resonance more or one that is split, and a notch of this housing where the attached mass swings against it"
     )
-    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"natural_frequency": (200.0, 400.0, 600.0, 800.0)}
+    starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {
+        "natural_frequency": (160.0, 240.0, 360.0, 500.0, 680.0, 900.0, 1200.0),
+        "damping_ratio": (0.05,),
+    }
     decisive: ClassVar[tuple[str, ...]] = ("natural_frequency",)
     hollows: ClassVar[Mapping[str, tuple[float, ...]]] = {"ratio": (0.5, 0.63, 0.8, 1.25, 1.6, 2.0)}
     half_turn: ClassVar[frozenset[str]] = frozenset({"angle"})

@@ -600,7 +600,8 @@ def test_a_law_that_the_search_can_hardly_tell_from_the_best_goes_on_to_all_samp
     [
         (60_000.0, 900.0, 1.5, True),  # 9 % of the 10,000 above noise, 1.5 % of all
         (60_000.0, 400.0, 1.5, False),  # explains next to nothing: a second would be another first
-        (60_000.0, 9_900.0, 1.05, False),  # leaves nothing
+        (60_000.0, 9_900.0, 1.05, True),  # leaves little
+        (60_000.0, 9_900.0, 1.02, False),  # leaves nothing
         (49_000.0, 5.0, 1.5, True),  # less than noise: any gain is a share
     ],
 )
@@ -714,7 +715,7 @@ def test_a_gap_whose_place_cannot_be_looked_for_says_why(simulator: Simulator, n
 def test_what_swings_unseen_at_the_place_of_the_gap_begins_at_frequencies_close_together(
     simulator: Simulator, near: Fitted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A pipe on a housing that swings at 284 rad/s did not show in looks that began at 200 and 400 rad/s."""
+    """A pipe on a housing that swings at 284 rad/s did not show in looks that began at 200 and 400 rad/s; nor one at 890 in ours to 800."""
     found = Located(places=(Place(at="bearing_1.housing", probability=0.9, gain=1e3, share=0.9),), doubt="", forces=(), turned=())
     tried = candidates(rotor_bench.bench().scene, [hm.HiddenModeSupport, hm.SupportStiffnessChange, hm.GroundVibration, hm.BallPass])
     asked: list[Candidate] = []
@@ -731,7 +732,7 @@ def test_what_swings_unseen_at_the_place_of_the_gap_begins_at_frequencies_close_
     [plain] = [item for item in tried if item.kind is hm.HiddenModeSupport and item.at == "bearing_1"]
     for starts, given in ((hidden.first, plain.first), (hidden.starts, plain.starts)):
         rates = sorted({item.effect.natural_frequency for item in starts})  # type: ignore[attr-defined]
-        assert (rates[0], rates[-1]) == (200.0, pytest.approx(800.0))
+        assert (rates[0], rates[-1]) == (pytest.approx(100.0), pytest.approx(1500.0))  # all that the field says is typical
         assert max(b / a for a, b in itertools.pairwise(rates)) < 1.2
         ratios = {item.effect.ratio for item in given}  # type: ignore[attr-defined]
         assert len(starts) == len(rates) * len(ratios)

@@ -1,0 +1,111 @@
+"""When a second cause is looked for beside a first one that leaves little, and when it is claimed."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+import hdrive_mbs as hm
+from hdrive_mbs.diagnosis import gather
+from hdrive_mbs.diagnosis.diagnose import factors_of
+from hdrive_mbs.diagnosis.fit import Fitted, fit
+from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.nearly import nearly_right
+from hdrive_mbs.diagnosis.screening import Look
+from hdrive_mbs.diagnosis.search import Search, cheapest_looks
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.suspects import Suspect
+from hdrive_mbs.diagnosis.tasks import Found
+from hdrive_mbs.diagnosis.team import Team
+from hdrive_mbs.diagnosis.verdict import judge
+from tests.unit.diagnosis_cases import bench, quiet
+
+BENCH = bench()
+DRAG = Added(hm.ViscousDrag(coefficient=0.01), "load", "drag")
+RIPPLE = Added(hm.TorqueRipple(amplitude=0.1, order=2.0), "motor", "ripple")
+
+
+@pytest.fixture(scope="module")
+def fitted() -> tuple[Simulator, Fitted]:
+    simulator = Simulator(BENCH.trials(quiet()[0]), 2.5e-4, 4)
+    hypothesis = Hypothesis(factors_of(BENCH))
+    return simulator, fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=0)
+
+
+def found(fitted: Fitted, added: tuple[Added, ...], leaves: float, odds: float) -> Found:
+    """Causes that are said to leave so much."""
+    hypothesis = Hypothesis(factors_of(BENCH), added)
+    suspect = Suspect(added[-1].label, type(added[-1].effect).__name__, (hypothesis,), (hypothesis,))
+    changed = dataclasses.replace(fitted, hypothesis=hypothesis, cost=1e5 - odds, chi_fit=leaves, chi_held=leaves)
+    return Found(suspect, changed, odds)
+
+
+@pytest.mark.parametrize(
+    ("gap", "first", "pair", "both"),
+    [
+        (400.0, 1.05, 1.002, True),
+        (400.0, 1.05, 1.02, False),  # another law of the first might take six tenths
+        (400.0, 1.19, 1.06, False),  # what a law that is nearly right leaves of 400
+        (400.0, 1.25, 1.10, True),
+        (3.0, 1.08, 1.04, False),
+        (3.0, 1.15, 1.07, True),  # more than a third of much
+    ],
+)
+def test_of_the_little_that_a_first_cause_leaves_a_second_one_takes_most(
+    fitted: tuple[Simulator, Fitted], gap: float, first: float, pair: float, both: bool
+) -> None:
+    one = found(fitted[1], (DRAG,), first, 5000.0)
+    two = found(fitted[1], (DRAG, RIPPLE), pair, 5400.0)
+    claim = judge(gap, [one], [two])
+    assert claim.kind == "effect"
+    assert claim.fit is (two if both else one)
+
+
+def test_what_is_nearly_right_leaves_more_of_a_strong_gap_and_nothing_of_none() -> None:
+    assert nearly_right(400.0) == pytest.approx(math.exp(0.03 * math.log(400.0)))
+    assert nearly_right(0.99) == 1.0
+
+
+@pytest.mark.parametrize(("leaves", "second", "exchanged"), [(1.06, 1.001, True), (1.06, 1.03, False), (1.5, 1.3, True), (1.02, 1.0, None)])
+def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_anything_of_much(
+    fitted: tuple[Simulator, Fitted], monkeypatch: pytest.MonkeyPatch, leaves: float, second: float, exchanged: bool | None
+) -> None:
+    simulator, base = fitted
+    null = dataclasses.replace(base, cost=1e5, chi_fit=2.0, chi_held=2.0)
+    one, two = found(base, (DRAG,), leaves, 60_000.0), found(base, (DRAG, RIPPLE), second, 61_000.0)
+    asked: list[str] = []
+
+    def named(name: str, answer: object) -> None:
+        def answering(*arguments: object, **more: object) -> object:
+            asked.append(name)
+            return answer
+
+        monkeypatch.setattr(gather, name, answering)
+
+    named("joined", [])
+    named("search", Search(base, (two,)))
+    named("swapped", [])
+    named("alone", [])
+    named("moved", [])
+    named("contenders", (two,))
+    with Team(1) as team:
+        search, pairs, _ = gather._second(team, simulator, null, {}, [], Search(null, (one,)), (), lambda stage, done, total: None)
+    assert ("search" in asked) is (exchanged is not None)
+    assert ("swapped" in asked) is (exchanged is True)
+    assert pairs == ((two,) if exchanged else ())
+    assert (search is None) is (exchanged is None)
+
+
+def test_of_two_looks_at_one_suspect_the_cheaper_one_counts(fitted: tuple[Simulator, Fitted]) -> None:
+    hypothesis = Hypothesis(factors_of(BENCH), (DRAG,))
+    one, two = (Suspect(("viscous_drag", at), "ViscousDrag", (hypothesis,), (hypothesis,)) for at in ("load", "motor"))
+
+    def look(cost: float) -> Look:
+        return Look(hypothesis, hypothesis.start(), cost, fitted[1].residuals, hypothesis)
+
+    first, closer, other = look(5.0), look(7.0), look(6.0)
+    assert cheapest_looks([(one, first), (two, other), (one, closer)]) == [(one, first), (two, other)]
+    assert cheapest_looks([(one, closer), (two, other)]) == [(two, other), (one, closer)]
