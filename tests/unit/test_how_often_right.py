@@ -10,10 +10,11 @@ from typing import Any
 import pytest
 
 from benchmarks.withheld.case_score import interval
+from hdrive_mbs.diagnosis import gather, nearly, verdict
 
 ROOT = Path(__file__).parents[2]
 OWN = ROOT / "benchmarks" / "withheld" / "own"
-ORDINALS = {"2nd": 2, "3rd": 3, "4th": 4, "5th": 5, "6th": 6, "7th": 7, "8th": 8, "9th": 9, "10th": 10, "11th": 11, "12th": 12}
+ORDINALS = {"2nd": 2, "3rd": 3, "4th": 4, "5th": 5, "6th": 6, "7th": 7, "8th": 8, "9th": 9, "10th": 10, "11th": 11, "12th": 12, "13th": 13}
 ROWS = re.findall(r"^\| (drive|rotor) bench, (\S+) \| (.*) \|$", (ROOT / "docs" / "diagnosis.md").read_text("utf-8"), re.MULTILINE)
 
 
@@ -39,3 +40,27 @@ def test_the_documentation_leaves_out_no_set_since_the_first_it_names() -> None:
         told = sorted(ORDINALS[which] for name, which, _ in ROWS if name == bench)
         there = [int(path.parent.name.partition("_")[2]) for path in OWN.glob(f"{bench}_[0-9]*/results.json")]
         assert told == list(range(min(told), max(there) + 1))
+
+
+def test_the_figures_of_the_verdict_are_those_of_the_program() -> None:
+    """The table of docs/diagnosis.md, row by row."""
+    table = (ROOT / "docs" / "diagnosis.md").read_text("utf-8")
+    rows = dict(re.findall(r"^\| (.+?) \| (.+) \|$", table, re.MULTILINE))
+    rest = f"of the logarithm of the rest or {verdict.COMPARABLE:.0%} of the first one's log odds".replace("%", " %")
+    told = {
+        "the refitted model counts as noise up to": f"{verdict.CLEAN}",
+        "log odds that an effect needs, a parameter": f"{verdict.ODDS:g}, {verdict.PARAMETER_ODDS:g}",
+        "what an effect has to take away at least": f"{verdict.TRACE}",
+        "a claim has to take of the gap's logarithm, or a single cause of the gap itself": f"{verdict.EXPLAINED:.0%}, {verdict.LARGE:.0%}",
+        "a second cause is looked for where the best leaves more than": f"{gather.SLIGHT}",
+        "... and is claimed with log odds over the first of": f"{verdict.SECOND:g}, and {100 * verdict.MORE:g} % {rest}",
+        "two causes cannot be told apart within log odds of": f"{verdict.TIED:g}",
+    }
+    for name, value in told.items():
+        assert rows[name].replace(" %", "%") == value.replace(" %", "%"), name
+    little = (
+        f"... of a rest of at most {verdict.LITTLE:.2f} (more beside a gap of more than {verdict.LITTLE ** (1.0 / nearly.SMALL):.0f}:"
+        f" its power {nearly.SMALL}, {nearly.nearly_right(1000.0):.2f} at 1000)"
+    )
+    assert rows[little] == f"{verdict.SECOND:g}, and {verdict.MOST:.0%} of the logarithm of the rest".replace("%", " %")
+    assert verdict.LITTLE == gather.LEFT
