@@ -41,6 +41,8 @@ for: beside one that explains next to nothing a second would be another first.  
 a second has to take away before the first is looked for again beside it."""
 SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 """Of the search for a second cause."""
+GLANCE = replace(SHALLOW, held=False)
+"""Likewise beside a first one that leaves little: what is missing has bent little then."""
 SINGLES = 3
 """Labels that are fitted on all samples at least."""
 ALIKE = 6
@@ -171,7 +173,8 @@ def _second(
     pair = None
     much = left(first.fitted) > enough(null, LEFT)
     if not any(left(item.fitted) < (enough(null, LEFT) if much else SLIGHT) for item in together):
-        pair = search(team, coarse, first.fitted, groups, tried, depth=SHALLOW, report=partial(_said, said, "second cause"))
+        depth = SHALLOW if much else GLANCE
+        pair = search(team, coarse, first.fitted, groups, tried, depth=depth, report=partial(_said, said, "second cause"))
         together = [*pair.found, *together]
     if not together:
         return pair, (), ()

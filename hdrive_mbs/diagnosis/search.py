@@ -56,6 +56,7 @@ class Depth:
     picked : laws that get joint steps at most, from each ground
     kept : laws that are fitted on, at least and at most;  serious : how many of them to the end, besides all laws of the best label
     again : whether all is done again with held parameters where it leaves something
+    held : whether a search with one law of each label begins with held parameters where those of the base are bent
     """
 
     brief: tuple[int, int] = (4, 10)
@@ -64,6 +65,7 @@ class Depth:
     kept: tuple[int, int] = (3, 6)
     serious: int = 2
     again: bool = True
+    held: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +129,9 @@ def search(
     work = _Work(team, simulator, report or (lambda stage, done, total: None), how, begin)
     everything = suspects(base.hypothesis, groups, tried)
     found, first = (
-        work.from_grounds(base, everything) if how.laws == 1 else work.from_ground(base, base, everything, far=base.chi_fit > NEAR)
+        work.from_grounds(base, everything)
+        if how.laws == 1 and how.held
+        else work.from_ground(base, base, everything, far=base.chi_fit > NEAR)
     )
     found = work.other_ways(found, base, everything)
     looks = {f"{suspect.law} at {suspect.label[1]}": cost for suspect, cost in first}
