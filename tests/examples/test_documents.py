@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 import hdrive_mbs as hm
+from tests.examples.warm_process import WarmProcess
 from tests.patience import PATIENCE
 
 ROOT = Path(__file__).parents[2]
@@ -37,13 +36,18 @@ def skip_without_extras(code: str) -> None:
             pytest.importorskip(module, reason='needs the extra: pip install -e ".[records]"')
 
 
+@pytest.fixture(scope="module")
+def warm() -> Iterator[WarmProcess]:
+    with WarmProcess.start() as process:
+        yield process
+
+
 @pytest.mark.parametrize("code", EXAMPLES)
-def test_example_runs_as_printed(code: str, tmp_path: Path) -> None:
+def test_example_runs_as_printed(code: str, tmp_path: Path, warm: WarmProcess) -> None:
     skip_without_extras(code)
     script = tmp_path / "example.py"
     script.write_text(code, "utf-8")
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run([sys.executable, script], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=PATIENCE)
+    done = warm.run(script, PATIENCE)
     assert done.returncode == 0, done.stderr
     assert "LoweringWarning" not in done.stderr
 
