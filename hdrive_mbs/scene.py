@@ -129,10 +129,14 @@ class Scene:
         ``scene.replacing({"motor.inertia": 2e-3, "gear.stiffness": law})`` or ``scene.replacing(motor=part)``.
         Paths of effects begin with the effect's name.  Raises PlaceError for an unknown path.
         """
+        return self.changed({**(changes or {}), **parts})
+
+    def changed(self, changes: Mapping[str, Any], more: Sequence[PlacedEffect] = ()) -> Scene:
+        """A copy with values, laws or whole parts replaced by path, and further effects, whose places are checked when it is built."""
         changed: dict[str, Component] = dict(self.parts)
         effects = {placed.name: placed for placed in self.effects}
         inside: dict[str, dict[str, Any]] = {}
-        for path, value in {**(changes or {}), **parts}.items():
+        for path, value in changes.items():
             head, _, rest = path.partition(".")
             if head not in changed and head not in effects:
                 raise self._unknown_path(path, unknown_place("part or effect", head, [*changed, *effects]))
@@ -152,7 +156,7 @@ class Scene:
                 known = self.parameters()
                 path = next((f"{head}.{rest}" for rest in fields if f"{head}.{rest}" not in known), f"{head}.{next(iter(fields))}")
                 raise self._unknown_path(path, error) from None
-        return replace(self, parts=changed, effects=tuple(effects.values()))
+        return replace(self, parts=changed, effects=(*effects.values(), *more))
 
     def _unknown_path(self, path: str, error: PlaceError) -> PlaceError:
         near = difflib.get_close_matches(path, list(self.parameters()), n=1)

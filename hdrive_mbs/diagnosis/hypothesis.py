@@ -190,8 +190,7 @@ class Hypothesis:
             prefix = f"{item.name}."
             own = {path.removeprefix(prefix): values.pop(path) for path in list(values) if path.startswith(prefix)}
             placed.append(PlacedEffect(name=item.name, effect=item.effect.replacing(**own), at=item.at))
-        changed = scene.replacing(values)
-        return dataclasses.replace(changed, effects=(*changed.effects, *placed)) if placed else changed
+        return scene.changed(values, placed)
 
     def log_prior(self, z: FloatArray) -> float:
         """Logarithm of the prior density; of choices that an effect begins with, like an order, each is as likely."""
