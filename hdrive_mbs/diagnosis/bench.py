@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.ringing import Ringing
 from hdrive_mbs.diagnosis.trial import FloatArray, Trial
 from hdrive_mbs.errors import ParameterError, RecordError, unknown_place
 from hdrive_mbs.network.network import Network
@@ -65,7 +66,8 @@ class Bench:
     angles, speeds : of bodies at the start of every record, forward [rad, rad/s]; the other bodies turn with the first of them by their
         ideal ratios, or with a place whose motion is given, and all start at 0 where nothing is
     run_in : time before a record that is run with its inputs [s] and not compared: for records that begin in rotation, whose line whirls
-        already.  Inputs get times that count from its beginning, and so do the times of an answer
+        already.  Of a rotor line free vibration that goes on from before the record is taken out of the comparison then (ringing.py).
+        Inputs get times that count from its beginning, and so do the times of an answer
     settled : whether a rotor line starts every record where its weight and other steady forces let it rest, as a machine does;
         False for records of a model that starts undeflected
     together : parameters that are suspected together, by a name for the group; every other one is suspected alone
@@ -124,6 +126,7 @@ class Bench:
         scene = self.scene.replacing({item.path: item.law(moments, columns[name]) for name, item in self.inputs.items()})
         network = scene.network()
         unseen = np.full(before, np.nan)
+        speeds = speeds_with_the_rest(network, self.speeds)
         return (
             Trial(
                 name=record.name,
@@ -133,10 +136,19 @@ class Bench:
                 measured={name: item for name, item in self.measured.items() if name in columns},
                 held_out=np.concatenate((np.zeros(before, bool), held_out(len(times), record.name))),
                 angles=angles_with_the_rest(network, self.angles),
-                speeds=speeds_with_the_rest(network, self.speeds),
+                speeds=speeds,
                 settled=self._settled,
+                ringing=self._ringing(speeds, before),
             ),
         )
+
+    def _ringing(self, speeds: Mapping[str, float], before: int) -> Ringing | None:
+        """Free vibration of a rotor line that may have been in rotation when a record began."""
+        network = self.scene.network()
+        if not before or not network.is_lateral:
+            return None
+        turning = [body for body in network.bodies if not body.lateral and body.ratio != 0.0 and body.name in speeds]
+        return Ringing(next((abs(speeds[body.name] / body.ratio) for body in turning), 0.0), before)
 
     def planned(self, plan: Plan) -> tuple[Trial, ...]:
         """A record that has not been taken, laid beside the scene: what a planned experiment would show, measured columns zero.

@@ -30,6 +30,7 @@ from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.pictures import pictures_of
 from hdrive_mbs.diagnosis.record_words import record_words
 from hdrive_mbs.diagnosis.result import Cause, Diagnosis
+from hdrive_mbs.diagnosis.ringing import ringing_words
 from hdrive_mbs.diagnosis.scale_checks import looks_scaled
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.step import suitable_step
@@ -119,7 +120,13 @@ def diagnose(
     if watch is not None:
         watch(evidence)
     found = answer(known, chosen, evidence, started=started, pictures=pictures)
-    notes = (*left_out(tried, evidence.single, step), *team.lost, *(() if journal is None else journal.said), *reported)
+    notes = (
+        *left_out(tried, evidence.single, step),
+        *ringing_words(trials),
+        *team.lost,
+        *(() if journal is None else journal.said),
+        *reported,
+    )
     driven = {name: item.path for name, item in known.inputs.items()}
     files = {record.name: {"source": record.source, "sha256": record.sha256} for record in chosen if record.sha256}
     settings = {

@@ -42,6 +42,7 @@ class Whitener:
             dying = np.power(kept, np.arange(len(used), dtype=float))
             self._start = _Spread(self._filtered(dying), self._used, sigma**2 - ahead)
         self._offset = _Spread(self._filtered(np.ones(len(used))), self._used, measured.offset**2)
+        self._key = measured.white, measured.coloured, measured.offset, used.tobytes()
 
     def _filtered(self, values: FloatArray) -> FloatArray:
         """Innovations of the kept samples over their standard deviation."""
@@ -52,9 +53,14 @@ class Whitener:
         white = np.asarray(lfilter([self._scale, -self._scale * self._kept], [1.0, -self._left], values)[:: self._every])
         return white if self._start is None else self._start.shrunk(white)
 
-    def __call__(self, residuals: FloatArray) -> FloatArray:
-        """Whitened residuals of the kept samples; those that do not count are whitened too, with the same offset."""
-        return self._offset.shrunk(self._filtered(residuals))
+    def __call__(self, residuals: FloatArray, free: Free | None = None) -> FloatArray:
+        """Whitened residuals of the kept samples; those that do not count are whitened too, with the same offset.
+
+        free : courses of which the residuals hold nobody knows how much: they are taken out over the samples that count, and what is
+            left counts for so much more as that takes degrees of freedom
+        """
+        white = self._offset.shrunk(self._filtered(residuals))
+        return white if free is None else free.across(self._key, self, self._used).left(white)
 
 
 class _Spread:
@@ -74,3 +80,54 @@ class _Spread:
     def shrunk(self, white: FloatArray) -> FloatArray:
         """The samples with variance 1 along it too."""
         return white if self._pull == 0.0 else white - (white @ self._own) * self._pull * self._whole
+
+
+ROUNDED = 1e-10
+"""Square of a singular value, over the largest one, below which a course is one of the others."""
+FADED = 1e-9
+"""Share of their largest value below which courses have died out."""
+
+
+class Free:
+    """Courses of which residuals hold nobody knows how much.
+
+    courses : shape (n, courses)
+    """
+
+    def __init__(self, courses: FloatArray) -> None:
+        self._courses = courses
+        self._known: dict[object, _Across] = {}
+
+    def across(self, key: object, whiten: Whitener, used: npt.NDArray[np.bool_]) -> _Across:
+        """What leaves them out of white samples: the same for columns of equal noise.
+
+        key : what tells whiteners apart;  used : samples that count
+        """
+        if key not in self._known:
+            self._known[key] = _Across(np.array([whiten(np.ascontiguousarray(course)) for course in self._courses.T]).T, used)
+        return self._known[key]
+
+
+class _Across:
+    """What is left of samples across directions along which anything may lie.
+
+    whole : shape (n, directions), white;  used : samples that count
+    """
+
+    def __init__(self, whole: FloatArray, used: npt.NDArray[np.bool_]) -> None:
+        there = np.flatnonzero(np.max(np.abs(whole), axis=1, initial=0.0) > FADED * np.max(np.abs(whole), initial=0.0))
+        self._rows = slice(int(there[0]), int(there[-1]) + 1) if len(there) else slice(0, 0)
+        whole, self._used = whole[self._rows], used[self._rows]
+        own = whole * self._used[:, None]
+        squares, mix = np.linalg.eigh(own.T @ own)
+        kept = squares > ROUNDED * squares[-1:]
+        self._across = whole @ (mix[:, kept] / np.sqrt(squares[kept]))  # of length 1 and at right angles on the samples that count
+        samples = int(np.count_nonzero(used))
+        self._scale = math.sqrt(samples / max(samples - int(np.count_nonzero(kept)), 1))
+
+    def left(self, white: FloatArray) -> FloatArray:
+        """The samples without their part along these directions, with variance 1 on the average."""
+        part = white[self._rows]
+        found = self._scale * white
+        found[self._rows] -= self._scale * (self._across @ (self._across.T @ (part * self._used)))
+        return np.asarray(found)

@@ -13,12 +13,12 @@ import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines, Start
-from hdrive_mbs.diagnosis.noise import Whitener
+from hdrive_mbs.diagnosis.noise import Free, Whitener
 from hdrive_mbs.diagnosis.resting import repeated
 from hdrive_mbs.diagnosis.robust import Blocks
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.trial_runs import LARGEST, measured_in, run_trial
-from hdrive_mbs.errors import ParameterError, SimulationError
+from hdrive_mbs.errors import LawError, ParameterError, PlaceError, SimulationError
 
 FloatArray = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -154,6 +154,7 @@ class Simulator:
                 index += len(trial.columns)
                 continue
             simulated = self._simulated(number, starts[number])
+            free = [self._free(trial, hypothesis, point) for point in points]
             for column in trial.columns:
                 span, whiten, measured, there = self.segments[index].span, self._whiteners[index], self._measured[index], self._there[index]
                 for k, values in enumerate(simulated):
@@ -162,9 +163,19 @@ class Simulator:
                         found[k] = None
                         continue
                     left = measured - values[column]
-                    own[span] = np.clip(whiten(left if there is None else left * there), -LARGEST, LARGEST)
+                    own[span] = np.clip(whiten(left if there is None else left * there, free[k]), -LARGEST, LARGEST)
                 index += 1
         return found
+
+    def _free(self, trial: Trial, hypothesis: Hypothesis, point: FloatArray) -> Free | None:
+        """Free vibration of the line at a point with which a record may begin."""
+        if trial.ringing is None:
+            return None
+        try:
+            scene = hypothesis.scene(trial.scene, point, to_run=True)
+        except (ParameterError, LawError, PlaceError):  # the run says so
+            return None
+        return Free(trial.ringing.courses(trial.ringing.roots(scene, trial.every), trial.samples, trial.every))
 
     def columns(self, hypothesis: Hypothesis, point: FloatArray) -> list[Values]:
         """Simulated values of the columns of each trial, in their units; empty where a trial cannot be run."""

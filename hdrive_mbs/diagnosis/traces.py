@@ -20,7 +20,7 @@ POINTS = 3000
 
 
 def traces(simulator: Simulator, nominal: Fitted, refit: Fitted, effect: Fitted) -> tuple[Trace, ...]:
-    """Every column of every trial with the three models, an unknown offset taken out of each."""
+    """Every column of every trial with the three models, to which an unknown offset and free vibration from before the record are added."""
     models = [simulator.columns(item.hypothesis, item.z) for item in (nominal, refit, effect)]
     found = []
     for number, trial in enumerate(simulator.trials):
@@ -32,6 +32,9 @@ def traces(simulator: Simulator, nominal: Fitted, refit: Fitted, effect: Fitted)
             measured = trial.measured[column]
             simulated = [model[number].get(column, np.full(trial.samples, np.nan)) for model in models]
             moved = [own + (_offset(values - own, trial) if measured.offset > 0.0 else 0.0) for own in simulated]
+            if trial.ringing is not None:
+                lines = [item.hypothesis.scene(trial.scene, item.z, to_run=True) for item in (nominal, refit, effect)]
+                moved = [own + trial.ringing.part_of(values - own, line, trial.every) for own, line in zip(moved, lines, strict=True)]
             found.append(
                 Trace(
                     record=trial.name,

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.ringing import Ringing
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.scene import Scene
@@ -29,6 +30,7 @@ class Trial:
     angles, speeds : of bodies at the start [rad, m, rad/s, m/s]; 0 if not given
     settled : whether lateral coordinates start where the line, with the very parameters and effects of a run, stays at rest;
         forces of time are those at the start of the first of the trials that share a scene
+    ringing : free vibration of unknown size that the columns begin with
     motions : places that follow a measured angle, by name, whatever turns them in the scene: forward angle over time
     """
 
@@ -41,6 +43,7 @@ class Trial:
     angles: Mapping[str, float] = field(default_factory=dict)
     speeds: Mapping[str, float] = field(default_factory=dict)
     settled: bool = False
+    ringing: Ringing | None = None
     motions: Mapping[str, Callable[[Value], Value]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

@@ -1,0 +1,159 @@
+"""Free vibration with which a record begins is taken out of the comparison, and nothing else."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+import hdrive_mbs as hm
+from hdrive_mbs.diagnosis.bench import Bench
+from hdrive_mbs.diagnosis.digest import digest
+from hdrive_mbs.diagnosis.fit import fit
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.noise import Free, Whitener
+from hdrive_mbs.diagnosis.ringing import LOWEST, POWERS, Ringing, ringing_words
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.traces import traces
+from models import jeffcott
+
+EVERY, SAMPLES, NOISE = 5e-4, 4000, 2e-7
+ROOTS = (-1.7 + 315.0j, -2.0 + 317.0j)
+PROBES = ("right_probe", "left_probe")
+STEP = 5e-5
+
+
+def ringing(amplitude: float, root: complex, first: int = 0) -> np.ndarray:
+    t = EVERY * np.arange(SAMPLES - first)
+    return np.concatenate((np.zeros(first), amplitude * np.real(np.exp(1j * 0.7 + root * t))))
+
+
+@pytest.mark.parametrize("coloured", [(0.0, 0.0), (NOISE, 0.95)])
+@pytest.mark.parametrize("every", [1, 4])
+def test_free_vibration_is_taken_out_also_a_little_off_its_frequency_and_noise_stays_noise(
+    every: int, coloured: tuple[float, float]
+) -> None:
+    rng = np.random.default_rng(3)
+    there = np.ones(SAMPLES, bool)
+    there[:100] = False
+    measured = Measured(channel="x", noise=NOISE, coloured=coloured)
+    whiten, free = Whitener(measured, there, every), Free(Ringing(300.0, 100).courses(ROOTS, SAMPLES, EVERY))
+    white = NOISE * rng.standard_normal(SAMPLES) * there
+    # 0.2 % off: 0.6 rad/s for 0.6 s is 0.35 rad; the third power that is left out is 0.35^3/6 = 0.7 % of 3 um at most
+    shaken = white + ringing(3e-6, -1.75 + 315.6j, 100)
+    seen = there[::every]
+    alone, left, before = (float(np.mean(item[seen] ** 2)) for item in (whiten(white, free), whiten(shaken, free), whiten(shaken)))
+    samples = np.count_nonzero(seen)
+    assert before > 3.0
+    assert left == pytest.approx(alone, abs=0.02)
+    if coloured[0] == 0.0:  # the noise that was drawn is white
+        assert alone == pytest.approx(1.0, abs=3.0 * math.sqrt(2.0 / samples))
+
+
+@pytest.mark.parametrize(("rate", "kept"), [(150.0, 0.98), (300.0, 0.9), (335.0, 0.9)])
+def test_what_goes_on_at_other_frequencies_stays(rate: float, kept: float) -> None:
+    """Of ten times the bandwidth 2 d of the free vibration away from it nine tenths and more."""
+    there = np.ones(SAMPLES, bool)
+    whiten, free = Whitener(Measured(channel="x", noise=NOISE), there), Free(Ringing(300.0, 0).courses(ROOTS, SAMPLES, EVERY))
+    other = np.sin(rate * EVERY * np.arange(SAMPLES))
+    assert float(np.sum(whiten(other, free) ** 2) / np.sum(whiten(other) ** 2)) > kept
+
+
+def test_columns_of_equal_noise_share_what_leaves_it_out() -> None:
+    free = Free(Ringing(300.0, 0).courses(ROOTS, SAMPLES, EVERY))
+    there = np.ones(SAMPLES, bool)
+    for name, noise in (("x", 1.0), ("y", 1.0), ("x", 2.0)):
+        Whitener(Measured(channel=name, noise=noise), there)(np.zeros(SAMPLES), free)
+    assert len(free._known) == 2
+
+
+def test_courses_begin_with_the_record_and_have_length_one() -> None:
+    courses = Ringing(300.0, 50).courses(ROOTS, 1000, EVERY)
+    assert courses.shape == (1000, len(ROOTS) * POWERS * 2)
+    assert not courses[:50].any()
+    np.testing.assert_allclose(np.linalg.norm(courses, axis=0), 1.0)
+    assert Ringing(300.0, 50).courses((), 1000, EVERY).shape == (1000, 0)
+
+
+# -- of a line -----------------------------------------------------------------------------------------
+
+
+def line() -> hm.Scene:
+    """A disc that is lightly damped: free vibration halves in 0.4 s."""
+    return jeffcott.build(
+        eccentricity=20e-6, damping_ratio=0.008, bearing_stiffness=5e6, bearing_damping=100.0, torque=40.0, final_speed=320.0
+    )
+
+
+def bench(scene: hm.Scene, run_in: float) -> Bench:
+    drive = next(name for name, part in scene.parts.items() if isinstance(part, hm.DriveTorque))
+    return hm.Bench(
+        scene=scene,
+        knowledge={"disc": hm.Uncertain(paths=("disc.mass",), sigma=0.02)},
+        measured={name: hm.Measured(channel=name, noise=NOISE) for name in ("disc.x", "disc.y")},
+        inputs={
+            "angle": hm.Input(path=f"{drive}.characteristic", law=lambda t, angle: hm.IdealSpeedMotor(motion=hm.smoothed_motion(t, angle)))
+        },
+        run_in=run_in,
+        settled=False,
+    )
+
+
+@pytest.fixture(scope="module")
+def record() -> hm.Record:
+    """The second half of a run-up, from behind the critical speed on, where it rings from the passage."""
+    run = hm.simulate(line(), 2.0, solver=hm.RungeKutta4(step=STEP), progress=False)
+    fold = round(EVERY / STEP)
+    turning = run["disc.speed"].values
+    first = int(np.argmax(turning > 1.15 * critical()))
+    samples = slice(first, None, fold)
+    times = run.times[samples] - run.times[first]
+    rng = np.random.default_rng(5)
+    columns = [
+        hm.TimeHistory(name, "m", times, run[name].values[samples] + NOISE * rng.standard_normal(len(times)))
+        for name in ("disc.x", "disc.y")
+    ]
+    return hm.Record.of("run", [hm.TimeHistory("angle", "rad", times, run["disc.angle"].values[samples]), *columns])
+
+
+def critical() -> float:
+    return float(np.min(hm.campbell(line(), np.linspace(0.0, 400.0, 9)).critical_speeds))
+
+
+def left(known: Bench, record: hm.Record, *, ringing: bool = True) -> float:
+    trials = [trial if ringing else dataclasses.replace(trial, ringing=None) for trial in known.trials(record)]
+    simulator = Simulator(trials, STEP)
+    hypothesis = Hypothesis(factors=())
+    [found] = simulator.residuals(hypothesis, [np.zeros(0)])
+    assert found is not None
+    return float(np.mean(found[simulator.used] ** 2))
+
+
+def test_a_run_up_that_is_cut_out_behind_its_critical_speed_is_reproduced(record: hm.Record) -> None:
+    known = bench(line(), 0.3)
+    assert left(known, record, ringing=False) > 100.0
+    assert left(known, record) == pytest.approx(1.0, abs=3.0 * math.sqrt(2.0 / (2 * len(record.times))))
+    [trial] = known.trials(record)
+    assert trial.ringing is not None
+    assert 0 < len(trial.ringing.roots(trial.scene, EVERY)) <= LOWEST
+    [words] = ringing_words([trial])
+    assert "'run' begins in rotation" in words
+    assert digest(trial.ringing) != digest(dataclasses.replace(trial.ringing, first=1))
+
+
+def test_without_a_run_in_or_a_line_that_bends_nothing_is_taken_out(record: hm.Record) -> None:
+    [trial] = bench(line(), 0.0).trials(record)
+    assert trial.ringing is None
+    assert ringing_words([trial]) == ()
+    assert Ringing(0.0, 5).roots(line(), 10.0) == ()  # sampled too slowly for any of it
+
+
+def test_pictures_show_the_model_with_it(record: hm.Record) -> None:
+    simulator = Simulator(bench(line(), 0.3).trials(record), STEP)
+    fitted = fit(simulator, Hypothesis(factors=()), np.zeros(0), steps=0)
+    for trace in traces(simulator, fitted, fitted, fitted):
+        there = np.isfinite(trace.measured)
+        assert float(np.std((trace.measured - trace.nominal)[there])) < 2.0 * NOISE
