@@ -175,7 +175,9 @@ class Simulator:
             scene = hypothesis.scene(trial.scene, point, to_run=True)
         except (ParameterError, LawError, PlaceError):  # the run says so
             return None
-        return Free(trial.ringing.courses(trial.ringing.roots(scene, trial.every), trial.samples, trial.every))
+        # a law with which forces do not balance at rest has none to give
+        roots = trial.ringing.roots(scene, trial.every) or trial.ringing.roots(trial.scene, trial.every)
+        return Free(trial.ringing.courses(roots, trial.samples, trial.every)) if roots else None
 
     def columns(self, hypothesis: Hypothesis, point: FloatArray) -> list[Values]:
         """Simulated values of the columns of each trial, in their units; empty where a trial cannot be run."""

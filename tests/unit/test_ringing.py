@@ -151,6 +151,20 @@ def test_without_a_run_in_or_a_line_that_bends_nothing_is_taken_out(record: hm.R
     assert Ringing(0.0, 5).roots(line(), 10.0) == ()  # sampled too slowly for any of it
 
 
+def test_a_law_with_which_the_line_finds_no_rest_rings_like_the_nominal_line(record: hm.Record, monkeypatch: pytest.MonkeyPatch) -> None:
+    trials = bench(line(), 0.3).trials(record)
+    hypothesis = Hypothesis(factors=())
+    [before] = Simulator(trials, STEP).residuals(hypothesis, [np.zeros(0)])
+    roots = Ringing.roots
+    monkeypatch.setattr(Ringing, "roots", lambda ringing, scene, every: roots(ringing, scene, every) if scene is trials[0].scene else ())
+    [found] = Simulator(trials, STEP).residuals(hypothesis, [np.zeros(0)])
+    np.testing.assert_array_equal(found, before)
+    monkeypatch.setattr(Ringing, "roots", lambda ringing, scene, every: ())
+    [found] = Simulator(trials, STEP).residuals(hypothesis, [np.zeros(0)])
+    assert found is not None
+    assert float(np.mean(found**2)) > 100.0
+
+
 def test_pictures_show_the_model_with_it(record: hm.Record) -> None:
     simulator = Simulator(bench(line(), 0.3).trials(record), STEP)
     fitted = fit(simulator, Hypothesis(factors=()), np.zeros(0), steps=0)
