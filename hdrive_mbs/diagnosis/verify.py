@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from hdrive_mbs.analysis.time_response import simulate
 from hdrive_mbs.diagnosis.driven import start_of
@@ -12,6 +13,8 @@ from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.engine.solvers import Trapezoidal
 from hdrive_mbs.errors import HdriveError
+
+FloatArray = npt.NDArray[np.float64]
 
 LONGEST = 4.0
 """Stretch of a record that is run on the engine [s]: its beginning."""
@@ -26,8 +29,11 @@ fourth; and its Newton tolerance."""
 def engine_difference(simulator: Simulator, fitted: Fitted) -> float:
     """Largest rms difference of a measured column between search and engine, in standard deviations of its noise.
 
-    On the beginning of the shortest record.  Raises AnalysisError, SimulationError or ParameterError where the engine cannot run the
-    scene.
+    On the beginning of the shortest record.  Where they differ on a rotor line, the engine runs again with half its step: the phase of
+    free vibration is late by (w h)^2/12 per radian with the trapezoidal rule, which is the engine's error and not the search's, and
+    falls to a quarter; both runs together give it without (Richardson).
+
+    Raises AnalysisError, SimulationError or ParameterError where the engine cannot run the scene.
     """
     number = _shortest(simulator)
     trial = simulator.trials[number]
@@ -35,16 +41,29 @@ def engine_difference(simulator: Simulator, fitted: Fitted) -> float:
     own = simulator.columns(fitted.hypothesis, fitted.z)[number]
     samples = min(trial.samples, int(LONGEST / trial.every))
     start = start_of(simulator, number, fitted)
-    duration = (samples - 1) * trial.every
-    solver = Trapezoidal(step=simulator.step / FINER, newton_tolerance=NEWTON) if scene.network().is_lateral else None
-    response = simulate(scene, duration, sample_step=trial.every, initial=start or None, solver=solver)
-    worst = 0.0
-    for column, measured in trial.measured.items():
-        if measured.late or column not in own:
-            continue
-        theirs = response.at(measured.channel, trial.times[:samples])
-        worst = max(worst, float(np.sqrt(np.mean((theirs - own[column][:samples]) ** 2))) / measured.total)
-    return worst
+    compared = [name for name, measured in trial.measured.items() if not measured.late and name in own]
+
+    def run(step: float | None) -> dict[str, FloatArray]:
+        """Compared columns on the engine, with its own step or one of the trapezoidal rule [s]."""
+        solver = None if step is None else Trapezoidal(step=step, newton_tolerance=NEWTON)
+        duration = (samples - 1) * trial.every
+        response = simulate(scene, duration, sample_step=trial.every, initial=start or None, solver=solver)
+        return {name: response.at(trial.measured[name].channel, trial.times[:samples]) for name in compared}
+
+    def worst(theirs: Mapping[str, FloatArray]) -> float:
+        return max(
+            (float(np.sqrt(np.mean((theirs[name] - own[name][:samples]) ** 2))) / trial.measured[name].total for name in compared),
+            default=0.0,
+        )
+
+    if not scene.network().is_lateral:
+        return worst(run(None))
+    step = simulator.step / FINER
+    coarse = run(step)
+    if worst(coarse) < AGREES:
+        return worst(coarse)
+    fine = run(0.5 * step)
+    return worst({name: fine[name] + (fine[name] - coarse[name]) / 3.0 for name in compared})
 
 
 def _shortest(simulator: Simulator) -> int:

@@ -18,6 +18,7 @@ from hdrive_mbs.diagnosis.noise import Free, Whitener
 from hdrive_mbs.diagnosis.ringing import LOWEST, POWERS, Ringing, ringing_words
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.traces import traces
+from hdrive_mbs.diagnosis.verify import engine_difference
 from models import jeffcott
 
 EVERY, SAMPLES, NOISE = 5e-4, 4000, 2e-7
@@ -171,3 +172,16 @@ def test_pictures_show_the_model_with_it(record: hm.Record) -> None:
     for trace in traces(simulator, fitted, fitted, fitted):
         there = np.isfinite(trace.measured)
         assert float(np.std((trace.measured - trace.nominal)[there])) < 2.0 * NOISE
+
+
+def test_the_engine_is_compared_without_the_error_of_its_own_step(record: hm.Record, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of second order, on a line that whirls on for 100 rad, with a step of half of that of the search, which is of fourth order."""
+    sharp = {name: hm.Measured(channel=name, noise=2e-9) for name in ("disc.x", "disc.y")}
+    simulator = Simulator(dataclasses.replace(bench(line(), 0.2), measured=sharp).trials(record.between(0.0, 0.2)), STEP)
+    fitted = fit(simulator, Hypothesis(factors=()), np.zeros(0), steps=0)
+    monkeypatch.setattr("hdrive_mbs.diagnosis.verify.FINER", 2.0)
+    sharpened = engine_difference(simulator, fitted)
+    monkeypatch.setattr("hdrive_mbs.diagnosis.verify.AGREES", math.inf)
+    plain = engine_difference(simulator, fitted)
+    assert plain > 0.3
+    assert sharpened < 0.15 * plain
