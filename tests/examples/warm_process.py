@@ -5,7 +5,6 @@ Each script still has a process of its own, with ``__main__``, arguments, folder
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
 import runpy
@@ -14,11 +13,12 @@ import subprocess
 import sys
 import time
 import traceback
-from collections.abc import Iterator
-from dataclasses import dataclass
+from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import Self
 
-ROOT = Path(__file__).parents[2]
+from tests.warm import Warm
+
 LOADED = (
     "hdrive_mbs",
     "hdrive_mbs.diagnosis.diagnose",
@@ -30,32 +30,17 @@ LOADED = (
 POLL = 0.02
 
 
-@dataclass(frozen=True)
-class WarmProcess:
+class WarmProcess(Warm):
     """Runs scripts."""
 
-    process: subprocess.Popen[str]
-
     @classmethod
-    @contextlib.contextmanager
-    def start(cls) -> Iterator[WarmProcess]:
+    def start(cls) -> AbstractContextManager[Self]:
         """A process that has the package loaded."""
-        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-        command = [sys.executable, "-m", "tests.examples.warm_process"]
-        with subprocess.Popen(command, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
-            try:
-                yield cls(process)
-            finally:
-                process.kill()
+        return cls.of("tests.examples.warm_process")
 
     def run(self, script: Path, timeout: float) -> subprocess.CompletedProcess[str]:
         """A script, run in its own folder.  Raises subprocess.TimeoutExpired."""
-        assert self.process.stdin is not None
-        assert self.process.stdout is not None
-        print(json.dumps([str(script), timeout]), file=self.process.stdin, flush=True)
-        line = self.process.stdout.readline()
-        assert line, f"the process that runs scripts ended at {script}"
-        code, out, err = json.loads(line)
+        code, out, err = self.ask([str(script), timeout])
         if code == -signal.SIGKILL:
             raise subprocess.TimeoutExpired(str(script), timeout, out, err)
         return subprocess.CompletedProcess([str(script)], code, out, err)

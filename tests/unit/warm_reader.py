@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import importlib
 import json
 import os
@@ -12,40 +11,27 @@ import subprocess
 import sys
 import tempfile
 import traceback
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from typing import Any, Self
 
-ROOT = Path(__file__).parents[2]
+from tests.warm import Warm
+
 SECONDS = 5
 """Of processor time, after which a reader hangs, surely: each takes less than one."""
 
 
-@dataclass(frozen=True)
-class WarmReader:
+class WarmReader(Warm):
     """Stands in for ``subprocess.run`` where a reader's process is started."""
 
-    process: subprocess.Popen[str]
-
     @classmethod
-    @contextlib.contextmanager
-    def start(cls, packages: Sequence[str]) -> Iterator[WarmReader]:
+    def start(cls, packages: Sequence[str]) -> AbstractContextManager[Self]:
         """A reader that has these packages loaded."""
-        command = [sys.executable, "-m", "tests.unit.warm_reader", *packages]
-        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-        with subprocess.Popen(command, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
-            try:
-                yield cls(process)
-            finally:
-                process.kill()
+        return cls.of("tests.unit.warm_reader", *packages)
 
     def run(self, command: Sequence[str], **options: Any) -> subprocess.CompletedProcess[bytes]:
         """What ``main`` of the reader gives for the last words of a command."""
-        assert self.process.stdin is not None
-        assert self.process.stdout is not None
-        print(json.dumps(command[-4:]), file=self.process.stdin, flush=True)
-        code, said = json.loads(self.process.stdout.readline())
+        code, said = self.ask(command[-4:])
         if code == -signal.SIGXCPU:
             raise subprocess.TimeoutExpired(command, SECONDS)
         return subprocess.CompletedProcess(command, code, stdout=b"", stderr=said.encode())
