@@ -153,18 +153,17 @@ class Simulator:
             if number in skipped:
                 index += len(trial.columns)
                 continue
-            simulated = self._simulated(number, starts[number])
-            free = [self._free(trial, hypothesis, point) for point in points]
-            for column in trial.columns:
-                span, whiten, measured, there = self.segments[index].span, self._whiteners[index], self._measured[index], self._there[index]
-                for k, values in enumerate(simulated):
-                    own = found[k]
-                    if values is None or own is None:
-                        found[k] = None
-                        continue
+            for k, values in enumerate(self._simulated(number, starts[number])):
+                own = found[k]
+                if values is None or own is None:
+                    found[k] = None
+                    continue
+                free = self._free(trial, hypothesis, points[k])
+                for at, column in enumerate(trial.columns, index):
+                    span, whiten, measured, there = self.segments[at].span, self._whiteners[at], self._measured[at], self._there[at]
                     left = measured - values[column]
-                    own[span] = np.clip(whiten(left if there is None else left * there, free[k]), -LARGEST, LARGEST)
-                index += 1
+                    own[span] = np.clip(whiten(left if there is None else left * there, free), -LARGEST, LARGEST)
+            index += len(trial.columns)
         return found
 
     def _free(self, trial: Trial, hypothesis: Hypothesis, point: FloatArray) -> Free | None:
