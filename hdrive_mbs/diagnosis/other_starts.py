@@ -25,11 +25,12 @@ MOST = 7
 
 
 def from_other_starts(
-    found: Sequence[Found], everything: Sequence[Suspect], done: Collection[tuple[Label, str]] = ()
+    found: Sequence[Found], everything: Sequence[Suspect], done: Collection[tuple[Label, str]] = (), *, near: bool = False
 ) -> list[tuple[Suspect, Task]]:
     """Laws of the best label with other start values in what may hold them in a hollow, and what was found for all else: first steps.
 
     found : fitted laws, best first;  done : laws at places that this was asked of before
+    near : only in the hollows that the laws themselves name beside what was found
     """
     if not found or found[0].suspect.law == PARAMETER:
         return []
@@ -38,11 +39,14 @@ def from_other_starts(
     tasks = []
     for item in alike:
         key = item.suspect.label, item.suspect.law
-        if key in done or key not in starts_of:
+        if key in done or key not in starts_of or not item.fitted.hypothesis.added:
             continue
         hypothesis, z = item.fitted.hypothesis.rescaled(item.fitted.z)
         *before, last = hypothesis.added
-        for effect in others(last.effect, [start.added[-1].effect for start in starts_of[key]]):
+        for effect in (
+            *last.effect.elsewhere(),
+            *(() if near else others(last.effect, [start.added[-1].effect for start in starts_of[key]])),
+        ):
             changed = Hypothesis(hypothesis.factors, (*before, Added(effect, last.at, last.name)), hypothesis.loose)
             tasks.append((item.suspect, Task(changed, changed.start(hypothesis.nominal_part(z)), None, FIRST, FINE)))
     return tasks

@@ -233,12 +233,13 @@ class _Work:
         """What was found and, where it leaves something, the other laws of the best label, and these laws begun elsewhere.
 
         Those that came nearest in their first steps from other values of what decides whether they show are fitted on, as far as they
-        are not hopeless beside the best.
+        are not hopeless beside the best.  Where the best leaves nothing, its laws begin in the hollows alone that they name beside what was
+        found: in a short record the wrong one of them may leave next to nothing.
         """
-        if not is_inexact(found, base):
-            return found
-        found = cheapest([*found, *self.fitted(other_laws(found, base, everything), "trying other laws of the best")])
-        asked = from_other_starts(found, everything, self._elsewhere)
+        inexact = is_inexact(found, base)
+        if inexact:
+            found = cheapest([*found, *self.fitted(other_laws(found, base, everything), "trying other laws of the best")])
+        asked = from_other_starts(found, everything, self._elsewhere, near=not inexact)
         self._elsewhere.update((suspect.label, suspect.law) for suspect, _ in asked)
         begun = sorted(self.fitted(asked, "beginning the best elsewhere"), key=lambda item: item.fitted.cost)
         near = [item for item in begun if not beyond(item.fitted, found[0].fitted)][: self.how.serious]

@@ -85,6 +85,13 @@ class Effect(Described, ABC):
             if value not in allowed:
                 raise ParameterError(f"{cls.__name__}.{name} = {value!r}: must be one of {', '.join(allowed)}.")
 
+    def elsewhere(self) -> tuple[Effect, ...]:
+        """The effect with values where a neighbouring hollow of the misfit may lie: a search that has ended with these looks there too.
+
+        None by default.  Override where fits are known to end beside the right values.
+        """
+        return ()
+
     @abstractmethod
     def apply(self, draft: Draft, place: str, name: str) -> None:
         """Add the effect to the network.  ``name`` is unique in the scene and prefixes channels.

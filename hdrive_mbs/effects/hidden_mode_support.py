@@ -10,8 +10,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.quantities import parameter
+
+ASIDE = (0.75, 0.87, 1.15, 1.33)
+"""Quotients of a frequency and that of a neighbouring hollow of the misfit, some."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,6 +59,17 @@ class HiddenModeSupport(Effect):
     decisive: ClassVar[tuple[str, ...]] = ("natural_frequency",)
     hollows: ClassVar[Mapping[str, tuple[float, ...]]] = {"ratio": (0.5, 0.63, 0.8, 1.25, 1.6, 2.0)}
     half_turn: ClassVar[frozenset[str]] = frozenset({"angle"})
+
+    def elsewhere(self) -> tuple[HiddenModeSupport, ...]:
+        """With one of its two frequencies aside, the other as it is: it shows where one of them is right, and little beside it."""
+        found = []
+        for part in ASIDE:
+            for changes in ({"ratio": self.ratio * part}, {"natural_frequency": self.natural_frequency * part, "ratio": self.ratio / part}):
+                try:
+                    found.append(self.replacing(**changes))
+                except ParameterError:
+                    continue
+        return tuple(found)
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         support = draft.support(place, "HiddenModeSupport")

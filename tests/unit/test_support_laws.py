@@ -255,3 +255,16 @@ def test_a_support_is_needed() -> None:
     for effect in (hm.SupportFriction(coulomb=1.0), hm.SupportStiffnessDrift(change=0.1, time_constant=1.0)):
         with pytest.raises(hm.PlaceError, match="a bearing with a housing, and 'bearing' is none"):
             free.with_effect(effect, at="bearing").network()
+
+
+def test_a_hidden_mass_is_looked_for_with_one_of_its_frequencies_aside() -> None:
+    found = hm.HiddenModeSupport(mass=1.0, natural_frequency=130.0, ratio=1.77)
+    others = found.elsewhere()
+    assert len(others) == 8
+    for other in others:
+        first, second = other.natural_frequency, other.natural_frequency * other.ratio
+        assert (first == found.natural_frequency) != (second == pytest.approx(130.0 * 1.77))
+    assert any(other.natural_frequency == pytest.approx(149.5) and other.ratio == pytest.approx(1.539, abs=1e-3) for other in others)
+    # ratios end at 20
+    assert len(hm.HiddenModeSupport(mass=1.0, natural_frequency=130.0, ratio=19.0).elsewhere()) == 4
+    assert hm.SupportMassChange(change=0.1).elsewhere() == ()
