@@ -14,7 +14,7 @@ from hdrive_mbs.diagnosis import gather, nearly, verdict
 
 ROOT = Path(__file__).parents[2]
 OWN = ROOT / "benchmarks" / "withheld" / "own"
-ORDINALS = {"2nd": 2, "3rd": 3, "4th": 4, "5th": 5, "6th": 6, "7th": 7, "8th": 8, "9th": 9, "10th": 10, "11th": 11, "12th": 12, "13th": 13}
+ORDINALS = {"2nd": 2, "3rd": 3} | {f"{number}th": number for number in range(4, 21)}
 ROWS = re.findall(r"^\| (drive|rotor) bench, (\S+) \| (.*) \|$", (ROOT / "docs" / "diagnosis.md").read_text("utf-8"), re.MULTILINE)
 
 
