@@ -21,7 +21,7 @@ from hdrive_mbs.diagnosis.diagnose import factors_of, strongest_first
 from hdrive_mbs.diagnosis.differences import jacobian
 from hdrive_mbs.diagnosis.fit import Fitted, fit, secant
 from hdrive_mbs.diagnosis.from_the_best import bent, other_laws, unfinished
-from hdrive_mbs.diagnosis.gather import ALIKE, SINGLES, close_laws, serious, wants_second
+from hdrive_mbs.diagnosis.gather import ALIKE, SINGLES, close_laws, serious, slight, wants_second
 from hdrive_mbs.diagnosis.ground import LIKELY, held, is_bent, screen_from
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
@@ -616,6 +616,13 @@ def test_a_second_cause_is_asked_for_where_the_first_explains_something_and_leav
         odds,
     )
     assert wants_second(null, found, samples=100_000) is wants
+
+
+@pytest.mark.parametrize(("samples", "gap", "least"), [(100_000, 2.0, 1.03), (5000, 2.0, 1.08), (500, 2.0, 1.1), (500, 400.0, 400.0**0.03)])
+def test_what_is_little_and_still_not_noise_depends_on_how_many_samples_there_are(
+    simulator: Simulator, samples: int, gap: float, least: float
+) -> None:
+    assert slight(left_with(simulator, cost=1e5, chi_fit=gap), samples) == pytest.approx(least)
 
 
 @pytest.fixture

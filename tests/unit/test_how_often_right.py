@@ -52,7 +52,10 @@ def test_the_figures_of_the_verdict_are_those_of_the_program() -> None:
         "log odds that an effect needs, a parameter": f"{verdict.ODDS:g}, {verdict.PARAMETER_ODDS:g}",
         "what an effect has to take away at least": f"{verdict.TRACE}",
         "a claim has to take of the gap's logarithm, or a single cause of the gap itself": f"{verdict.EXPLAINED:.0%}, {verdict.LARGE:.0%}",
-        "a second cause is looked for where the best leaves more than": f"{gather.SLIGHT}",
+        "a second cause is looked for where the best leaves more than": (
+            f"{gather.SLIGHT}, of fewer than {2.0 * (gather.SCATTER / (gather.SLIGHT - 1.0)) ** 2:,.0f} samples more,"
+            f" up to {gather.LEFT:.2f}"
+        ),
         "... and is claimed with log odds over the first of": f"{verdict.SECOND:g}, and {100 * verdict.MORE:g} % {rest}",
         "two causes cannot be told apart within log odds of": f"{verdict.TIED:g}",
     }

@@ -84,8 +84,9 @@ def test_a_second_resonance_begins_at_others_beside_the_first_as_it_was_found() 
     """A pipe at 0.65 of its first frequency ended below 0.36 of it (our own tenth rotor set, c02)."""
     pipe = hm.HiddenModeSupport(mass=1.6, natural_frequency=747.0, ratio=0.36, damping_ratio=0.02, angle=-0.33)
     begun_at = [(item.natural_frequency, item.ratio) for item in others(pipe, [pipe]) if isinstance(item, hm.HiddenModeSupport)]
-    assert begun_at[0] == (600.0, 0.36)
-    assert {(747.0, 0.63), (747.0, 0.8)} <= set(begun_at)
+    # by logarithm 680 is the nearest and stands for what was found; 900 is nearer than 500 and than another quotient
+    assert begun_at[0] == (900.0, 0.36)
+    assert {(747.0, 0.63), (500.0, 0.36), (900.0, 0.63)} <= set(begun_at)
     assert len(begun_at) == MOST
 
 

@@ -74,6 +74,7 @@ def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_anything
     fitted: tuple[Simulator, Fitted], monkeypatch: pytest.MonkeyPatch, leaves: float, second: float, exchanged: bool | None
 ) -> None:
     simulator, base = fitted
+    monkeypatch.setattr(gather, "SCATTER", 0.0)  # as if its samples were many
     null = dataclasses.replace(base, cost=1e5, chi_fit=2.0, chi_held=2.0)
     one, two = found(base, (DRAG,), leaves, 60_000.0), found(base, (DRAG, RIPPLE), second, 61_000.0)
     asked: list[str] = []
