@@ -183,7 +183,7 @@ def test_inside_the_gap_torque_only_the_jump_laws_pulse(laws: tuple[dict[str, An
 def bearings(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], str, Path]:
     """By the command line, which starts a process of its own."""
     folder = tmp_path_factory.mktemp("bearings")
-    done = CliRunner().invoke(app, ["bench", "bearings", "--quick", "--out", str(folder)], catch_exceptions=False)
+    done = CliRunner().invoke(app, ["bench", "bearings", "--quick", "--workers", "0", "--out", str(folder)], catch_exceptions=False)
     assert done.exit_code == 0, done.output
     return json.loads((folder / "results.json").read_text("utf-8")), (folder / "results.md").read_text("utf-8"), folder
 
