@@ -25,10 +25,10 @@ from hdrive_mbs.diagnosis.suspects import suspects
 from hdrive_mbs.diagnosis.tasks import Found, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
-from hdrive_mbs.diagnosis.verdict import TIED, left, takes_most
+from hdrive_mbs.diagnosis.verdict import LITTLE, TIED, left, takes_most
 from hdrive_mbs.errors import AnalysisError
 
-LEFT = 1.1
+LEFT = LITTLE
 """Mean square left by the best single cause, on what its fit saw and did not see, that is worth all that is done for a second one;
 more beside a strong one (``enough``).  In our own third drive set a lag beside a drag left 1.19 and 1.48 of 46, and was not looked for
 at 1.2."""

@@ -2,8 +2,8 @@
 
 A crack that the bending moment shuts is open by half whatever its side where the moment over which it shuts is large, so from the wrong
 side a fit ends there.  In our own seventh rotor set (c06, labels open) such a fit left 20; turned by half a turn, with all else as it
-was, two steps led to 3.3 and eight to 1.17.  The second resonance of a mass that hangs on a support is found from near it alone
-(tenth rotor set, c02).
+was, two steps led to 3.3 and eight to 1.17.  Hollows that a law knows of itself, like those of a second resonance, it names
+(``Effect.elsewhere``).
 """
 
 from __future__ import annotations
@@ -43,17 +43,15 @@ def from_other_starts(
             continue
         hypothesis, z = item.fitted.hypothesis.rescaled(item.fitted.z)
         *before, last = hypothesis.added
-        for effect in (
-            *last.effect.elsewhere(),
-            *(() if near else others(last.effect, [start.added[-1].effect for start in starts_of[key]])),
-        ):
+        beyond = [] if near else others(last.effect, [start.added[-1].effect for start in starts_of[key]])
+        for effect in (*last.effect.elsewhere(), *beyond):
             changed = Hypothesis(hypothesis.factors, (*before, Added(effect, last.at, last.name)), hypothesis.loose)
             tasks.append((item.suspect, Task(changed, changed.start(hypothesis.nominal_part(z)), None, FIRST, FINE)))
     return tasks
 
 
 def others(effect: Effect, starts: Sequence[Effect]) -> list[Effect]:
-    """An effect with other values in its decisive fields and in those of its hollows, one or several of them, nearest first.
+    """An effect with other values in its decisive fields, one or several of them, nearest first.
 
     Each of these fields keeps what it has or takes one of its values but the nearest.  What is not allowed and all beyond the
     first few are left out.
@@ -62,8 +60,8 @@ def others(effect: Effect, starts: Sequence[Effect]) -> list[Effect]:
     """
     kind, shapes = type(effect), searched_fields(type(effect))
     ways = []
-    for name in [name for name in (*kind.decisive, *kind.hollows) if name in shapes]:
-        values = kind.hollows.get(name) or kind.starts.get(name) or tuple(dict.fromkeys(getattr(start, name) for start in starts))
+    for name in [name for name in kind.decisive if name in shapes]:
+        values = kind.starts.get(name) or tuple(dict.fromkeys(getattr(start, name) for start in starts))
         there = sorted((_apart(effect, name, value, shapes[name].unit), value) for value in values)
         ways.append([(0.0, {}), *((far, {name: value}) for far, value in there[1:])])
     combined = [_together(some) for some in itertools.product(*ways)]

@@ -283,10 +283,10 @@ def cheapest_looks(looks: Sequence[tuple[Suspect, Look]]) -> list[tuple[Suspect,
     A closer look begins elsewhere than the first one, at a selection of more starts, and is not always the better one: our own thirteenth
     rotor set (c10, labels open) has a mass on two springs nearly alike, at 900 rad/s, where the selection has another quotient of both.
     """
-    best: dict[int, tuple[Suspect, Look]] = {}
+    best: dict[Suspect, Look] = {}
     for suspect, look in by_cost(looks):
-        best.setdefault(id(suspect), (suspect, look))
-    return list(best.values())
+        best.setdefault(suspect, look)
+    return list(best.items())
 
 
 def _begun(item: Suspect, periods: StandsOut) -> Suspect:

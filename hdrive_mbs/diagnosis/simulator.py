@@ -18,7 +18,7 @@ from hdrive_mbs.diagnosis.resting import repeated
 from hdrive_mbs.diagnosis.robust import Blocks
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.trial_runs import LARGEST, measured_in, run_trial
-from hdrive_mbs.errors import LawError, ParameterError, PlaceError, SimulationError
+from hdrive_mbs.errors import ParameterError, SimulationError
 
 FloatArray = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -167,13 +167,10 @@ class Simulator:
         return found
 
     def _free(self, trial: Trial, hypothesis: Hypothesis, point: FloatArray) -> Free | None:
-        """Free vibration of the line at a point with which a record may begin."""
+        """Free vibration of the line at a point that could be run, with which a record may begin."""
         if trial.ringing is None:
             return None
-        try:
-            scene = hypothesis.scene(trial.scene, point, to_run=True)
-        except (ParameterError, LawError, PlaceError):  # the run says so
-            return None
+        scene = hypothesis.scene(trial.scene, point, to_run=True)
         # a law with which forces do not balance at rest has none to give
         roots = trial.ringing.roots(scene, trial.every) or trial.ringing.roots(trial.scene, trial.every)
         return Free(trial.ringing.courses(roots, trial.samples, trial.every)) if roots else None

@@ -73,9 +73,6 @@ class Effect(Described, ABC):
     """Whether it stands for its family in a first look, in place of the law with the fewest numbers to search."""
     decisive: ClassVar[tuple[str, ...]] = ()
     """Those of them of which already a first look takes every value: away from the right one the effect does not show."""
-    hollows: ClassVar[Mapping[str, tuple[float, ...]]] = {}
-    """Field -> values that a law which leaves something begins from again, once all else is known: of others that may hold a fit in a
-    hollow, like a second resonance."""
     half_turn: ClassVar[frozenset[str]] = frozenset()
     """Angles [rad] that say the same once more after half a turn."""
 

@@ -66,4 +66,3 @@ def test_the_figures_of_the_verdict_are_those_of_the_program() -> None:
         f" its power {nearly.SMALL}, {nearly.nearly_right(1000.0):.2f} at 1000)"
     )
     assert rows[little] == f"{verdict.SECOND:g}, and {verdict.MOST:.0%} of the logarithm of the rest".replace("%", " %")
-    assert verdict.LITTLE == gather.LEFT

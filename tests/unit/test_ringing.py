@@ -10,12 +10,14 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.bench import Bench
+from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.digest import digest
 from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.noise import Free, Whitener
 from hdrive_mbs.diagnosis.ringing import LOWEST, POWERS, Ringing, ringing_words
+from hdrive_mbs.diagnosis.search import fit_nominal
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.traces import traces
 from hdrive_mbs.diagnosis.verify import engine_difference
@@ -43,24 +45,31 @@ def test_free_vibration_is_taken_out_also_a_little_off_its_frequency_and_noise_s
     measured = Measured(channel="x", noise=NOISE, coloured=coloured)
     whiten, free = Whitener(measured, there, every), Free(Ringing(300.0, 100).courses(ROOTS, SAMPLES, EVERY))
     white = NOISE * rng.standard_normal(SAMPLES) * there
-    # 0.2 % off: 0.6 rad/s for 0.6 s is 0.35 rad; the third power that is left out is 0.35^3/6 = 0.7 % of 3 um at most
+    # 0.2 % off: 0.6 rad/s for 0.6 s is 0.35 rad; the third power that is left out is 0.35^3/6 = 0.7 % of the vibration, 5e-5 of its square
     shaken = white + ringing(3e-6, -1.75 + 315.6j, 100)
     seen = there[::every]
     alone, left, before = (float(np.mean(item[seen] ** 2)) for item in (whiten(white, free), whiten(shaken, free), whiten(shaken)))
     samples = np.count_nonzero(seen)
     assert before > 3.0
-    assert left == pytest.approx(alone, abs=0.02)
+    assert left == pytest.approx(alone, abs=5e-5 * before)
     if coloured[0] == 0.0:  # the noise that was drawn is white
         assert alone == pytest.approx(1.0, abs=3.0 * math.sqrt(2.0 / samples))
 
 
-@pytest.mark.parametrize(("rate", "kept"), [(150.0, 0.98), (300.0, 0.9), (335.0, 0.9)])
-def test_what_goes_on_at_other_frequencies_stays(rate: float, kept: float) -> None:
-    """Of ten times the bandwidth 2 d of the free vibration away from it nine tenths and more."""
-    there = np.ones(SAMPLES, bool)
-    whiten, free = Whitener(Measured(channel="x", noise=NOISE), there), Free(Ringing(300.0, 0).courses(ROOTS, SAMPLES, EVERY))
-    other = np.sin(rate * EVERY * np.arange(SAMPLES))
-    assert float(np.sum(whiten(other, free) ** 2) / np.sum(whiten(other) ** 2)) > kept
+@pytest.mark.parametrize("aside", [-15.0, -10.0, 10.0, 20.0])
+@pytest.mark.parametrize("decay", [1.7, 4.0])
+def test_of_a_vibration_that_goes_on_beside_it_as_much_is_lost_as_laguerre_functions_hold(decay: float, aside: float) -> None:
+    """t^p exp(-d t), p = 0, 1, .., made orthonormal, are Laguerre functions, each with the spectrum 2 d/(d^2 + w^2) (Szego, Orthogonal
+    Polynomials, 5.1): of a vibration that lasts for T they hold 2 d/(T (d^2 + D^2)) each, D aside.  What it does at the other side of
+    zero, 2 w away, adds a share of some D/w to that."""
+    rate, samples = 315.0, 24_000
+    there = np.ones(samples, bool)
+    whiten = Whitener(Measured(channel="x", noise=NOISE), there)
+    free = Free(Ringing(300.0, 0).courses((complex(-decay, rate),), samples, EVERY))
+    other = np.sin((rate + aside) * EVERY * np.arange(samples))
+    kept = float(np.sum(whiten(other, free) ** 2) / np.sum(whiten(other) ** 2)) * (1.0 - 2 * POWERS / samples)  # without degrees of freedom
+    held = POWERS * 2.0 * decay / (samples * EVERY * (decay**2 + aside**2))
+    assert 1.0 - kept == pytest.approx(held, rel=abs(aside) / rate)
 
 
 def test_columns_of_equal_noise_share_what_leaves_it_out() -> None:
@@ -103,10 +112,9 @@ def bench(scene: hm.Scene, run_in: float) -> Bench:
     )
 
 
-@pytest.fixture(scope="module")
-def record() -> hm.Record:
-    """The second half of a run-up, from behind the critical speed on, where it rings from the passage."""
-    run = hm.simulate(line(), 2.0, solver=hm.RungeKutta4(step=STEP), progress=False)
+def logged(scene: hm.Scene) -> hm.Record:
+    """A run-up of a scene from behind its critical speed on, where it rings from the passage, on the multibody engine."""
+    run = hm.simulate(scene, 2.0, solver=hm.RungeKutta4(step=STEP), progress=False)
     fold = round(EVERY / STEP)
     turning = run["disc.speed"].values
     first = int(np.argmax(turning > 1.15 * critical()))
@@ -118,6 +126,11 @@ def record() -> hm.Record:
         for name in ("disc.x", "disc.y")
     ]
     return hm.Record.of("run", [hm.TimeHistory("angle", "rad", times, run["disc.angle"].values[samples]), *columns])
+
+
+@pytest.fixture(scope="module")
+def record() -> hm.Record:
+    return logged(line())
 
 
 def critical() -> float:
@@ -143,6 +156,22 @@ def test_a_run_up_that_is_cut_out_behind_its_critical_speed_is_reproduced(record
     [words] = ringing_words([trial])
     assert "'run' begins in rotation" in words
     assert digest(trial.ringing) != digest(dataclasses.replace(trial.ringing, first=1))
+
+
+@pytest.mark.parametrize("off", [0.01, 0.03, -0.03])
+def test_a_modulus_is_found_from_beside_its_data_sheet_although_the_line_rings(off: float) -> None:
+    """3 % of it are 1.5 % of the frequencies, 3.5 rad/s: several radians while it rings."""
+    scene = line()
+    moduli = tuple(path for path in scene.parameters() if path.endswith("youngs_modulus"))
+    true = scene.replacing({path: (1.0 + off) * scene.parameters()[path].value for path in moduli})
+    known = dataclasses.replace(bench(scene, 0.3), knowledge={"shaft": hm.Uncertain(paths=moduli, sigma=0.03)})
+    simulator = Simulator(known.trials(logged(true)), STEP)
+    fitted = fit_nominal(simulator, factors_of(known))
+    [moved], deviation = 0.03 * fitted.z, 0.03 * math.sqrt(fitted.covariance[0, 0])
+    assert moved == pytest.approx(off, abs=3.0 * deviation)
+    assert deviation < 2e-4
+    samples = np.count_nonzero(simulator.fit)
+    assert fitted.chi_fit == pytest.approx(1.0, abs=3.0 * math.sqrt(2.0 / samples))
 
 
 def test_without_a_run_in_or_a_line_that_bends_nothing_is_taken_out(record: hm.Record) -> None:
@@ -184,4 +213,5 @@ def test_the_engine_is_compared_without_the_error_of_its_own_step(record: hm.Rec
     monkeypatch.setattr("hdrive_mbs.diagnosis.verify.AGREES", math.inf)
     plain = engine_difference(simulator, fitted)
     assert plain > 0.3
-    assert sharpened < 0.15 * plain
+    # what the extrapolation leaves is of fourth order: some (w h)^2 of it, 2e-5 at 240 rad/s, and what the search errs
+    assert sharpened < 0.01 * plain
