@@ -33,9 +33,10 @@ LEFT = LITTLE
 more beside a strong one (``enough``).  In our own third drive set a lag beside a drag left 1.19 and 1.48 of 46, and was not looked for
 at 1.2."""
 SLIGHT = 1.03
-"""Likewise, above which a second one is looked for at all: right single causes of our own rotor sets 9 to 13, opened, leave 1.013 at most
-but for four whose laws are not exact (1.06 to 1.5), and a mass that swings on a support beside a bow left 1.07 of 400 (c03 of the
-thirteenth).  Up to LEFT the search for it goes on only with one that takes most of that (``takes_most``)."""
+"""Likewise, above which a second one is looked for at all: of 48 right single causes of our own rotor sets 9 to 14, opened, 42 leave
+1.014 at most in the search and six whose laws are not exact 1.06 and more (tests/unit/test_verdict_constants.py), and a mass that swings
+on a support beside a bow left 1.07 of 400 (c03 of the thirteenth).  Up to LEFT the search for it goes on only with one that takes most of
+that (``takes_most``)."""
 SCATTER = 4.0
 """Standard deviations of the mean square of noise, sqrt(2/n) of n samples, that it has to lie above 1 besides, up to LEFT: in 750
 samples of a real axis (KUKA KR300) a delay left 1.05, of which a second one of 0.1 ms took all."""

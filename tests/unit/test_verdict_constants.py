@@ -1,10 +1,11 @@
-"""Two constants of the verdict against the stored fits of the opened rotor sets that they were drawn from.
+"""Constants of the search and the verdict against the stored fits of the opened rotor sets that they were drawn from.
 
 Figures are those of the committed raw fits: what both halves of the samples leave.
 """
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 
@@ -13,10 +14,13 @@ import pytest
 from benchmarks.withheld.calibrate import Stored, rows_with, stored
 from benchmarks.withheld.calibration import expected_error, log_loss
 from benchmarks.withheld.case_score import Row, shares
+from hdrive_mbs.diagnosis.gather import SLIGHT
 from hdrive_mbs.diagnosis.verdict import MORE, OTHER_AT_FIT
 
 OWN = Path(__file__).parents[2] / "benchmarks" / "withheld" / "own"
 SETS = (9, 10, 11, 12)
+"""From which the constants of the verdict were drawn."""
+LATER = (*SETS, 13, 14)
 
 
 @pytest.fixture(scope="module")
@@ -69,3 +73,18 @@ def test_none_of_these_is_as_probable_as_costs_least(cases: list[Stored]) -> Non
         loss[value] = log_loss([row.confidence for row in rows], [row.effect for row in rows])
     assert loss[OTHER_AT_FIT] < min(loss[-4.5], loss[-3.5], loss[-1.5])
     assert loss[OTHER_AT_FIT] == pytest.approx(loss[-2.5], abs=2e-3)
+
+
+def test_right_single_causes_leave_less_than_what_a_second_one_is_looked_for_in() -> None:
+    """Of the search's samples; but for laws that are not exact, which leave clearly more."""
+    left = []
+    for n in LATER:
+        right = {row["case"] for row in json.loads((OWN / f"rotor_{n}" / "results.json").read_text("utf-8"))["cases"] if row["effect"]}
+        for case in stored(OWN / f"rotor_{n}" / "raw", OWN / f"rotor_{n}" / "truths.json"):
+            causes = case.labels["truth"]
+            if case.raw["case"] in right and len(causes) == 1 and causes[0]["effect"] != "unknown":
+                left.append(math.sqrt(case.raw["search"][0]["fit"] * case.raw["search"][0]["held"]))
+    exact, inexact = [item for item in left if item < SLIGHT], [item for item in left if item >= SLIGHT]
+    assert (len(exact), len(inexact)) == (42, 6)
+    assert round(max(exact), 4) == 1.0135
+    assert round(min(inexact), 2) == 1.06
