@@ -3,7 +3,8 @@
 Where the table of names leaves the place open, it is taken by meaning:
 
 * bow, crack, internal damping and shaft stiffness belong to the one ``shaft``, whatever section or rotor they sit at in our bench
-* misalignment and torque ripple come in at the ``drive_end``
+* misalignment and torque ripple come in at the ``drive_end``, and so does what brakes the spin where the drive end is, at bearing 1
+  (since own rotor set 15, whose labels were open by then; a station elsewhere keeps its name)
 * what holds a housing (its stiffness, its looseness, a hidden mode) is at ``support_k``; what is between ring and housing at
   ``bearing_k``; both bearings together are ``bearings``
 * an eccentricity out of its tolerance is ``unbalance``: so says the practice case of the unbalance
@@ -52,6 +53,8 @@ OF_SUPPORTS = (
     *("ground_vibration", "external_shock"),
 )
 """Families without a name that act on a housing from outside."""
+OF_SPIN = ("quadratic_drag", "viscous_drag", "unequal_drag", "friction", "friction_by_angle")
+"""Families without a name that brake how the shaft turns."""
 AT_PROBES: dict[Label, Name] = {
     **{("probe_runout", f"rotor_{k}"): ("probe_runout", f"probe_rotor_{k}") for k in SIDES},
     **{(family, probe): ("probe_gain", probe) for family in ("probe_gain", "sensor_gain") for probe in PROBES},
@@ -71,5 +74,8 @@ NAMES = Names(
         "bearing_damping": "bearings",
     },
     both={frozenset({"bearing_1", "bearing_2"}): "bearings"},
-    elsewhere={(family, f"bearing_{k}"): f"support_{k}" for family in OF_SUPPORTS for k in SIDES},
+    elsewhere={
+        **{(family, f"bearing_{k}"): f"support_{k}" for family in OF_SUPPORTS for k in SIDES},
+        **{(family, "bearing_1"): "drive_end" for family in OF_SPIN},
+    },
 )

@@ -36,6 +36,8 @@ which the records answer linearly, so that what each promises is known."""
 FAINTEST, WITHIN = 50.0, 0.1
 """Log-likelihood of a gap, at least, and the share of it that a start may cost, which goes with the square of its size.  From starts with
 four times its compliance a crack was not seen (our own open rotor set of seed 1801, c05: the refitted model leaves 1.010)."""
+CHOICES, RIVAL = 3, 0.5
+"""Values of what is not searched, orders say, that are looked at once more, and share of the best one's gain that each of them has to have."""
 RUN_WHOLE = 3
 """Looks that may be run through trials that were left out: the first one whose cost then is that of a run below what others promise."""
 ORIGIN = -1
@@ -123,12 +125,33 @@ class Screen:
         most = DIRECTED if all(_is_directed(group.hypothesis, self.null.hypothesis.size) for group in groups) else FOLLOWED
         if len(hypotheses) > most:
             self._keep_the_most_promising(groups, most)
-        looks = ((look, group) for group in groups for look in self._looks(group))
+        looks = [(look, group) for group in groups for look in self._looks(group)]
+        if len(groups) > 1:
+            looks += self._once_more(looks)
         best = self._best_whole(heapq.nsmallest(RUN_WHOLE, looks, key=lambda pair: pair[0].cost))
         if best is None:
             return None
         hypothesis, z = best.hypothesis.rescaled(best.z)
         return Look(hypothesis, z, best.cost, best.residuals, best.start)
+
+    def _once_more(self, looks: Sequence[tuple[Look, Starts]]) -> list[tuple[Look, Starts]]:
+        """Looks from the best ones of those choices that are not searched: what is not chosen here is never fitted.
+
+        One step of five coordinates is no judge between two orders of a ripple: the right one may be some way off still.
+        """
+        before = self.null.cost
+        best: dict[int, tuple[Look, Starts]] = {}
+        for look, group in sorted(looks, key=lambda pair: pair[0].cost):
+            best.setdefault(id(group), (look, group))
+        ranked = list(best.values())
+        rivals = [pair for pair in ranked[:CHOICES] if before - pair[0].cost > RIVAL * (before - ranked[0][0].cost)]
+        found = []
+        for look, group in rivals if len(rivals) > 1 else []:
+            closer = Starts([look.start], [look.z], self.null)
+            closer.skipped = group.skipped
+            closer.found[0][ORIGIN] = look.residuals
+            found += [(item, closer) for item in self._looks(closer)]
+        return found
 
     def _best_whole(self, looks: Sequence[tuple[Look, Starts]]) -> Look | None:
         """The best with all trials run, those that were left out only for looks that are the best as far as is known.

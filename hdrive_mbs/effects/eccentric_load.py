@@ -9,9 +9,11 @@ from typing import ClassVar
 import numpy as np
 
 from hdrive_mbs.effects.effect import Effect, add_body_torque, moving_body
+from hdrive_mbs.effects.places import turning_bodies
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.network.network import Network
 from hdrive_mbs.quantities import parameter
 
 
@@ -27,7 +29,8 @@ class EccentricLoad(Effect):
 
     Source: statics.  Leaves out the inertia of the mass: its m r^2 (plus its own) belongs to the
     inertia of the part, so motion tells m r and a_0 but neither m nor r alone: a search holds r.  Also leaves out
-    what the weight does to the bearings.
+    what the weight does to the bearings, and that the mass shakes what can move across the axis: at stations of a
+    rotor line, where that is an Unbalance, it is not searched.
     """
 
     mass: float = parameter("kg", "mass m", low=0.0, high=1e4, typical=(0.05, 50.0))
@@ -43,6 +46,11 @@ class EccentricLoad(Effect):
     signature: ClassVar[str] = "torque at once per turn of the body at every speed, and a rest position that the body swings back to"
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("mass", "start_angle"), ("second_torque", "second_phase"))
     starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"radius": (0.1,)}
+
+    @classmethod
+    def places(cls, network: Network) -> tuple[str, ...]:
+        """Bodies that only turn: a station of a rotor line would be shaken by the mass as well."""
+        return tuple(place for place in turning_bodies(network) if place not in network.positions)
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         body = moving_body(self, draft, place)

@@ -457,6 +457,44 @@ def test_a_first_look_finds_a_hidden_mode_from_a_start_that_is_a_third_off() -> 
     assert base.cost - best.cost > 100.0
 
 
+def with_ripple(**fields: float) -> tuple[Simulator, Fitted, tuple[Hypothesis, ...]]:
+    """A record with a ripple of the motor, the refitted model without it, and the starts of a first look at such a ripple."""
+    simulator = Simulator(BENCH.trials(records((hm.TorqueRipple(**fields), "motor"))[0]), 2.5e-4, 4)
+    hypothesis = Hypothesis(factors_of(BENCH))
+    [suspect] = suspects(hypothesis, {}, candidates(BENCH.scene, [hm.TorqueRipple]))
+    return simulator, fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=25), suspect.first
+
+
+def test_a_first_look_finds_a_ripple_whether_or_not_it_grows_with_the_torque() -> None:
+    """Both parts share a phase, and one that grows with the torque, however small, spoils the column of the phase of one that does not."""
+    simulator, base, starts = with_ripple(amplitude=0.05, order=6.0, phase=1.9, second_amplitude=0.0125, second_phase=0.6)
+    growing = [start for start in starts if start.added[-1].effect.relative > 0.0]  # type: ignore[attr-defined]
+    assert 0 < len(growing) < len(starts)
+    screen = screen_from(simulator, base)
+    look, without = screen.look(starts), screen.look(growing)
+    assert look is not None
+    assert without is not None
+    assert look.hypothesis.added[-1].effect.order == 6.0  # type: ignore[attr-defined]
+    best = fit(simulator, look.hypothesis, look.z, steps=25)
+    assert base.cost - look.cost > 0.95 * (base.cost - best.cost)
+    assert base.cost - without.cost < 0.7 * (base.cost - best.cost)
+
+
+def test_orders_that_come_close_in_a_look_are_looked_at_once_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No fit goes from one order to another: what a first step of five coordinates takes for order 42 is a ripple of order 6."""
+    fields = {"amplitude": 0.05, "relative": 0.05, "order": 6.0, "phase": 1.9, "second_amplitude": 0.0125, "second_phase": 0.6}
+    simulator, base, starts = with_ripple(**fields)
+    starts = tuple(start for start in starts if start.added[-1].effect.relative == 0.0)  # type: ignore[attr-defined]
+    screen = screen_from(simulator, base)
+    look = screen.look(starts)
+    monkeypatch.setattr("hdrive_mbs.diagnosis.screening.RIVAL", math.inf)
+    once = screen.look(starts)
+    assert look is not None
+    assert once is not None
+    assert [item.hypothesis.added[-1].effect.order for item in (look, once)] == [6.0, 42.0]  # type: ignore[attr-defined]
+    assert base.cost - look.cost > 3.0 * (base.cost - once.cost)
+
+
 def test_other_laws_of_the_best_label_begin_with_its_values(simulator: Simulator) -> None:
     everything = suspects(
         Hypothesis(factors_of(BENCH)), {}, candidates(BENCH.scene, [hm.DahlFriction, hm.PreslidingFriction, hm.CoulombStribeckFriction])

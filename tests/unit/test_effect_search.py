@@ -532,6 +532,12 @@ def test_a_hardening_spring_of_a_hidden_mode_stores_what_it_takes() -> None:
     assert taken == pytest.approx(-0.2 * 4.0 * 9.0)
 
 
+def test_a_weight_is_not_searched_where_its_mass_would_shake_the_line() -> None:
+    """On a rotor line it would be an unbalance: 0.04 kg m, say, where the bench has 2e-4; what only turns may carry an arm."""
+    assert hm.EccentricLoad.places(rotor_bench.build().network()) == ()
+    assert "load" in hm.EccentricLoad.places(drive_bench.build().network())
+
+
 # -- the bench ----------------------------------------------------------------------------------------------------
 
 

@@ -80,6 +80,13 @@ def test_every_name_is_of_a_cause_that_the_diagnosis_tries_at_a_place_of_the_for
     assert {names.place_of(label) for label in tried} <= PLACES[bench]
 
 
+def test_what_brakes_the_spin_of_the_rotor_bench_is_at_the_drive_end_where_that_is() -> None:
+    names = names_of("rotor")
+    for family in ("quadratic_drag", "friction"):
+        assert names.name((family, "bearing_1")) is None
+        assert [names.place_of((family, at)) for at in ("bearing_1", "bearing_2", "rotor_1")] == ["drive_end", "bearing_2", "rotor_1"]
+
+
 def test_every_parameter_name_of_the_drive_can_be_answered() -> None:
     wanted = {f"parameter_{what}" for what in ("flexspline_stiffness", "load_inertia", "motor_inertia", "output_shaft_stiffness")}
     wanted |= {"parameter_input_shaft_stiffness", "parameter_viscous", "lost_motion"}
