@@ -74,6 +74,8 @@ def _as_given(simulator: Simulator, hypothesis: Hypothesis) -> Fitted:
         steps=0,
         chi_fit=chi_square(residuals, simulator.fit),
         chi_held=chi_square(residuals, simulator.held_out),
+        typical=2.0 * simulator.blocks.cost(residuals[simulator.fit]) / max(int(simulator.fit.sum()), 1),
+        misfit_held=simulator.held_blocks.cost(residuals[simulator.held_out]),
     )
 
 

@@ -42,6 +42,7 @@ def _fit(fitted: Fitted) -> dict[str, Any]:
         "held": fitted.chi_held,
         "cost": fitted.cost,
         "misfit": fitted.cost - fitted.hypothesis.prior_cost(fitted.z),
+        "misfit_held": fitted.misfit_held,
         "steps": fitted.steps,
         "converged": bool(fitted.converged),
         "z": [round(value, 4) for value in fitted.z.tolist()],

@@ -3,7 +3,9 @@
 log Z = -misfit + log p(z) + (n/2) log 2 pi - log det(J^T W J + P)/2
 
 with n search coordinates, the prior density p and P the curvature of the prior (for a strength, whose logarithm is
-uniform, 1/z^2).  The misfit takes the scale of the noise as unknown wherever the model is wrong (robust.py).
+uniform, 1/z^2).  Samples that no fit saw add their own misfit at these parameters where a verdict is due (tasks.proven):
+Z of both would be p(seen) p(unseen | seen), of which the second is taken at the most probable point.  The misfit takes the
+scale of the noise as unknown wherever the model is wrong (robust.py).
 Source: MacKay, Information Theory, Inference and Learning Algorithms, 27.
 """
 

@@ -49,6 +49,7 @@ class Fitted:
     typical : twice the misfit of the fitted samples over their number: chi_fit with each stretch that fits badly counted by its logarithm.
         Impacts of a contact come a little early or late with every law that is nearly right, and few samples then hold most of the
         sum of squares (practice rotor-p03, a clearance: 1.50 where it is 1.04 so).
+    misfit_held : misfit of the samples that no fit saw, counted as that of the others
     """
 
     hypothesis: Hypothesis
@@ -61,6 +62,7 @@ class Fitted:
     chi_fit: float
     chi_held: float
     typical: float
+    misfit_held: float
     history: tuple[float, ...] = field(default=())
 
     @property
@@ -166,6 +168,7 @@ def fit(
         chi_fit=chi_square(residuals, mask),
         chi_held=chi_square(residuals, simulator.held_out),
         typical=2.0 * simulator.blocks.cost(residuals[mask]) / max(int(np.count_nonzero(mask)), 1),
+        misfit_held=simulator.held_blocks.cost(residuals[simulator.held_out]),
         history=tuple(history),
     )
 

@@ -22,7 +22,7 @@ from hdrive_mbs.diagnosis.pairs import alone, contenders, joined, moved, swapped
 from hdrive_mbs.diagnosis.search import Depth, Report, Search, fit_nominal, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import suspects
-from hdrive_mbs.diagnosis.tasks import Found, scored
+from hdrive_mbs.diagnosis.tasks import Found, proven, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import LITTLE, TIED, left, takes_most
@@ -65,7 +65,7 @@ class Evidence:
 
     fine : all samples;  nominal, null : the model as given and refitted, on these
     single : search for one cause;  pair : for a second one besides the best first, if that left something
-    singles : the best labels on all samples, best first;  pairs : likewise with two causes; log odds over the null
+    singles : the best labels on all samples, best first;  pairs : likewise with two causes; log odds over the null, with what no fit saw
     place : where the gap lies
     """
 
@@ -243,7 +243,7 @@ def gather(
     ones = (*serious(single.labels), *close_laws(single.found))
     last = on_all_samples(team, fine, null, [item.fitted for item in (*ones, *double)], place, partial(said, "all samples"))
     final = [
-        None if fitted is None else scored(Found(item.suspect, fitted), last.refitted)
+        None if fitted is None else proven(Found(item.suspect, fitted), last.refitted)
         for item, fitted in zip((*ones, *double), last.others, strict=True)
     ]
     singles = sorted(filter(None, final[: len(ones)]), key=lambda item: -item.log_odds)

@@ -59,7 +59,8 @@ class Cause:
 
     effect, at : family and place; ("parameter", group name) for parameters;  kind : of the effect, or "parameter"
     law : class of the law that did best;  signature : what an engineer would see, in words
-    probability : calibrated;  log_odds : evidence against the refitted nominal model
+    probability : calibrated;  log_odds : evidence over that of the refitted nominal model, of the
+        samples that the fit saw, and log-likelihood over that of the others
     fit, held_out : mean square of the whitened residuals, 1 for noise alone
     """
 

@@ -37,7 +37,7 @@ FAINTEST, WITHIN = 50.0, 0.1
 """Log-likelihood of a gap, at least, and the share of it that a start may cost, which goes with the square of its size.  From starts with
 four times its compliance a crack was not seen (our own open rotor set of seed 1801, c05: the refitted model leaves 1.010)."""
 CHOICES, RIVAL = 3, 0.5
-"""Values of what is not searched, orders say, that are looked at once more, and share of the best one's gain that each of them has to have."""
+"""Values of what is not searched, orders say, that are looked at once more, and share of the best one's gain that each has to have."""
 RUN_WHOLE = 3
 """Looks that may be run through trials that were left out: the first one whose cost then is that of a run below what others promise."""
 ORIGIN = -1

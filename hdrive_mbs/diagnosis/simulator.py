@@ -80,7 +80,8 @@ class Simulator:
         self.segments = tuple(segments)
         self.fit, self.held_out = np.concatenate(fit), np.concatenate(held)
         self.used = self.fit | self.held_out
-        self.blocks = Blocks(self._numbered()[self.fit])
+        blocks = self._numbered()
+        self.blocks, self.held_blocks = Blocks(blocks[self.fit]), Blocks(blocks[self.held_out])
         self.spans = self._spans()
         self.unseen: Mapping[str, Skipped] = {}
         self.runs = 0

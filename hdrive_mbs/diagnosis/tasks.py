@@ -32,7 +32,7 @@ HOPELESS = 10.0
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """A fitted suspect with the logarithm of its evidence over that of the model it adds to."""
+    """A fitted suspect with the logarithm of its evidence over that of the model it adds to; see ``scored`` and ``proven``."""
 
     suspect: Suspect
     fitted: Fitted
@@ -81,6 +81,12 @@ def further(fitted: Fitted, steps: int = CONVERGED, share: float = FINE, hops: i
 def scored(found: Found, base: Fitted) -> Found:
     """With its log odds against the model it adds to."""
     return Found(found.suspect, found.fitted, log_evidence(found.fitted) - log_evidence(base))
+
+
+def proven(found: Found, base: Fitted) -> Found:
+    """With its log odds against the model it adds to, from the samples that its fit saw and from how it tells those that no fit saw."""
+    told = base.misfit_held - found.fitted.misfit_held
+    return Found(found.suspect, found.fitted, log_evidence(found.fitted) - log_evidence(base) + told)
 
 
 def those_that_ran(suspects_: Sequence[Suspect], fits: Sequence[Fitted | None]) -> list[Found]:

@@ -173,4 +173,5 @@ def standing(hypothesis: Hypothesis, curvature: FloatArray) -> Fitted:
         chi_fit=1.0,
         chi_held=1.0,
         typical=1.0,
+        misfit_held=0.0,
     )

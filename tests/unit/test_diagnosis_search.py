@@ -33,7 +33,7 @@ from hdrive_mbs.diagnosis.screening import FAINTEST, Look, Screen, Starts
 from hdrive_mbs.diagnosis.search import ENOUGH, Depth, Search, _Work, fit_nominal, is_inexact, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, simplest, suspects
-from hdrive_mbs.diagnosis.tasks import FIRST, Found, Task, run_task
+from hdrive_mbs.diagnosis.tasks import FIRST, Found, Task, proven, run_task, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.verdict import judge
 from hdrive_mbs.errors import AnalysisError
@@ -101,6 +101,24 @@ def test_the_curvature_is_that_of_differences_at_the_end(simulator: Simulator) -
     np.testing.assert_allclose(np.diag(fitted.curvature), np.diag(weighted.T @ columns), rtol=0.02)
 
 
+def test_a_verdict_counts_how_well_a_law_tells_what_its_fit_did_not_see(simulator: Simulator) -> None:
+    """Of two laws whose fits are as good the one that tells more of the rest comes first, by its logarithm of the likelihood."""
+    hypothesis = Hypothesis(factors_of(BENCH))
+    base, fitted = (fit(simulator, hypothesis, np.full(hypothesis.size, value), steps=0) for value in (0.0, 0.5))
+    unseen = fitted.residuals[simulator.held_out]
+    assert len(unseen) > 100
+    numbers = simulator._numbered()[simulator.held_out]
+    squares = [float(np.mean(unseen[numbers == k] ** 2)) * np.count_nonzero(numbers == k) for k in np.unique(numbers)]
+    counts = [int(np.count_nonzero(numbers == k)) for k in np.unique(numbers)]
+    expected = sum(0.5 * (s if s <= n else n * (1.0 + math.log(s / n))) for s, n in zip(squares, counts, strict=True))
+    assert fitted.misfit_held == pytest.approx(expected)
+    suspect = Suspect(("drag", "load"), "ViscousDrag", (hypothesis,), (hypothesis,))
+    better = dataclasses.replace(fitted, misfit_held=fitted.misfit_held - 60.0)
+    told = [proven(Found(suspect, item), base).log_odds for item in (fitted, better)]
+    assert told[1] - told[0] == pytest.approx(60.0)
+    assert told[0] - scored(Found(suspect, fitted), base).log_odds == pytest.approx(base.misfit_held - fitted.misfit_held)
+
+
 def test_what_cannot_be_run_from_where_it_begins_is_left_out(simulator: Simulator) -> None:
     hypothesis = Hypothesis(factors_of(BENCH), (Added(hm.ViscousDrag(coefficient=900.0), "motor", "drag"),))
     # the rate drag/inertia times the step is 200; what steps of this method follow ends at 2.8
@@ -119,10 +137,10 @@ def test_more_is_left_over_beside_a_strong_cause(simulator: Simulator) -> None:
 
 def test_a_first_look_begins_where_a_change_hardly_changes_anything_and_takes_every_decisive_start() -> None:
     scene = rotor_bench.bench().scene
-    changes = {item.effect.change for one in candidates(scene, [hm.SupportStiffnessChange]) for item in one.first}  # type: ignore[attr-defined]
+    changes = {item.effect.change for one in candidates(scene, [hm.SupportStiffnessChange]) for item in one.first}
     assert changes == {1e-4}
     for one in candidates(scene, [hm.HiddenModeSupport]):
-        assert {item.effect.natural_frequency for item in one.first} == set(hm.HiddenModeSupport.starts["natural_frequency"])  # type: ignore[attr-defined]
+        assert {item.effect.natural_frequency for item in one.first} == set(hm.HiddenModeSupport.starts["natural_frequency"])
 
 
 def test_held_parameters_stay_near_the_data_sheet(simulator: Simulator) -> None:
@@ -468,13 +486,13 @@ def with_ripple(**fields: float) -> tuple[Simulator, Fitted, tuple[Hypothesis, .
 def test_a_first_look_finds_a_ripple_whether_or_not_it_grows_with_the_torque() -> None:
     """Both parts share a phase, and one that grows with the torque, however small, spoils the column of the phase of one that does not."""
     simulator, base, starts = with_ripple(amplitude=0.05, order=6.0, phase=1.9, second_amplitude=0.0125, second_phase=0.6)
-    growing = [start for start in starts if start.added[-1].effect.relative > 0.0]  # type: ignore[attr-defined]
+    growing = [start for start in starts if start.added[-1].effect.relative > 0.0]
     assert 0 < len(growing) < len(starts)
     screen = screen_from(simulator, base)
     look, without = screen.look(starts), screen.look(growing)
     assert look is not None
     assert without is not None
-    assert look.hypothesis.added[-1].effect.order == 6.0  # type: ignore[attr-defined]
+    assert look.hypothesis.added[-1].effect.order == 6.0
     best = fit(simulator, look.hypothesis, look.z, steps=25)
     assert base.cost - look.cost > 0.95 * (base.cost - best.cost)
     assert base.cost - without.cost < 0.7 * (base.cost - best.cost)
@@ -484,14 +502,14 @@ def test_orders_that_come_close_in_a_look_are_looked_at_once_more(monkeypatch: p
     """No fit goes from one order to another: what a first step of five coordinates takes for order 42 is a ripple of order 6."""
     fields = {"amplitude": 0.05, "relative": 0.05, "order": 6.0, "phase": 1.9, "second_amplitude": 0.0125, "second_phase": 0.6}
     simulator, base, starts = with_ripple(**fields)
-    starts = tuple(start for start in starts if start.added[-1].effect.relative == 0.0)  # type: ignore[attr-defined]
+    starts = tuple(start for start in starts if start.added[-1].effect.relative == 0.0)
     screen = screen_from(simulator, base)
     look = screen.look(starts)
     monkeypatch.setattr("hdrive_mbs.diagnosis.screening.RIVAL", math.inf)
     once = screen.look(starts)
     assert look is not None
     assert once is not None
-    assert [item.hypothesis.added[-1].effect.order for item in (look, once)] == [6.0, 42.0]  # type: ignore[attr-defined]
+    assert [item.hypothesis.added[-1].effect.order for item in (look, once)] == [6.0, 42.0]
     assert base.cost - look.cost > 3.0 * (base.cost - once.cost)
 
 
@@ -776,12 +794,12 @@ def test_what_swings_unseen_at_the_place_of_the_gap_begins_at_frequencies_close_
     [hidden] = [item for item in asked if item.kind is hm.HiddenModeSupport]
     [plain] = [item for item in tried if item.kind is hm.HiddenModeSupport and item.at == "bearing_1"]
     for starts, given in ((hidden.first, plain.first), (hidden.starts, plain.starts)):
-        rates = sorted({item.effect.natural_frequency for item in starts})  # type: ignore[attr-defined]
+        rates = sorted({item.effect.natural_frequency for item in starts})
         assert (rates[0], rates[-1]) == (pytest.approx(100.0), pytest.approx(1500.0))  # all that the field says is typical
         assert max(b / a for a, b in itertools.pairwise(rates)) < 1.2
-        ratios = {item.effect.ratio for item in given}  # type: ignore[attr-defined]
+        ratios = {item.effect.ratio for item in given}
         assert len(starts) == len(rates) * len(ratios)
-        assert {item.effect.ratio for item in starts} == ratios  # type: ignore[attr-defined]
+        assert {item.effect.ratio for item in starts} == ratios
 
 
 def drags(*places: str) -> Hypothesis:

@@ -100,6 +100,7 @@ def fitted(simulator: Simulator, z: np.ndarray = ORIGIN) -> Fitted:
         chi_fit=1.0,
         chi_held=1.0,
         typical=1.0,
+        misfit_held=0.0,
     )
 
 

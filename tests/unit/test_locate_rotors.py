@@ -116,6 +116,7 @@ def localiser(*forces: KnownForce, errors: dict[str, np.ndarray] | None = None, 
         chi_fit=1.0,
         chi_held=1.0,
         typical=1.0,
+        misfit_held=0.0,
     )
     return Localiser(simulator, null)
 

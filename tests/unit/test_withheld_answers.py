@@ -25,7 +25,11 @@ from benchmarks.withheld.raw import constants, finding_again
 from benchmarks.withheld.regression import Equation, chosen, column
 from hdrive_mbs.diagnosis import verdict
 from hdrive_mbs.diagnosis.candidates import candidates
+from hdrive_mbs.diagnosis.fit import fit
+from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.simulator import Simulator
 from models import drive_bench, rotor_bench
+from tests.unit import diagnosis_cases
 
 DRIVE = names_of("drive")
 ROUND_1 = Path(__file__).parents[3] / "shared" / "withheld"
@@ -473,3 +477,14 @@ def test_chance_and_training_answer_in_the_same_format(tmp_path: Path) -> None:
     right = sum("friction_motor" in [item["effect"] for item in answer["effects"]] for answer in blind)
     share = 1.0 / (len(names) + 2)
     assert abs(right / 300 - share) < 4.0 * math.sqrt(share * (1.0 - share) / 300)  # 4 standard errors of a count
+
+
+def test_the_nominal_model_of_a_baseline_is_a_fit_with_nothing_to_fit() -> None:
+    from benchmarks.withheld.baselines import _as_given
+
+    bench = diagnosis_cases.bench()
+    simulator = Simulator(bench.trials(diagnosis_cases.quiet()[0]), 2.5e-4, 4)
+    given, fitted = _as_given(simulator, Hypothesis(factors=())), fit(simulator, Hypothesis(factors=()), np.zeros(0), steps=0)
+    for name in ("cost", "chi_fit", "chi_held", "typical", "misfit_held"):
+        assert getattr(given, name) == pytest.approx(getattr(fitted, name)), name
+    assert given.chi_fit > 1.0
