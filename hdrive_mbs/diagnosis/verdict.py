@@ -3,7 +3,8 @@
 The rules look at three figures of each fit on all records: the log odds (evidence over that of the refitted nominal
 model, with how much better the samples are told that no fit saw), the misfit on samples that it saw and on those that
 no fit saw, and how much of the nominal model's misfit is gone.  The constants were chosen on
-simulated cases of our own making (benchmarks/withheld), never on a set that had still to be scored.  That a second cause needs a first one that leaves more than NOISE was seen in withheld round 1, whose labels are not known here.
+simulated cases of our own making (benchmarks/withheld), never on a set that had still to be scored.
+That a second cause needs a first one that leaves more than NOISE was seen in withheld round 1, whose labels are not known here.
 """
 
 from __future__ import annotations

@@ -944,7 +944,7 @@ def test_a_pair_is_given_up_where_its_second_cause_does_without_the_first(
         "search": lambda *some, **how: Search(null, (found(3.4, 4400.0, "load"),)),
         "_there": lambda *some: (),
         "_second": lambda *some: (None, (pair,), (found(alone_leaves, 0.0, "motor"),)),
-        "scored": lambda item, base: dataclasses.replace(item, log_odds=base.cost - item.fitted.cost),
+        **dict.fromkeys(("scored", "proven"), lambda item, base: dataclasses.replace(item, log_odds=base.cost - item.fitted.cost)),
         "on_all_samples": on_all,
     }.items():
         monkeypatch.setattr(f"hdrive_mbs.diagnosis.gather.{name}", made)
