@@ -28,6 +28,7 @@ class Bent:
         self.fit[::4] = False
         self.held_out = ~self.fit
         self.blocks = Blocks(np.zeros(int(self.fit.sum()), int))
+        self.held_blocks = Blocks(np.zeros(int(self.held_out.sum()), int))
         self.noise = np.random.default_rng(5).normal(size=SAMPLES)
         self.spans = (slice(0, int(self.fit.sum())),)
         self.unseen: dict[str, frozenset[int]] = {}

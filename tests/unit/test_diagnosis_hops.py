@@ -33,6 +33,7 @@ class Waved:
         self.fit[::4] = False
         self.held_out = ~self.fit
         self.blocks = Blocks(np.zeros(int(self.fit.sum()), int))
+        self.held_blocks = Blocks(np.zeros(int(self.held_out.sum()), int))
         noise = np.random.default_rng(3).normal(size=SAMPLES)
         self.noise = noise - noise[self.fit].mean()  # so that the bottom of the bowl is where it is said to be
         self.spans = (slice(0, int(self.fit.sum())),)

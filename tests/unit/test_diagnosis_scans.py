@@ -39,6 +39,7 @@ class Flat:
         self.held_out = ~self.fit
         number = int(self.fit.sum())
         self.blocks = Blocks(np.zeros(number, int))
+        self.held_blocks = Blocks(np.zeros(SAMPLES - number, int))
         self.spans = (slice(0, number),)
         self.unseen: dict[str, frozenset[int]] = {}
         self.noise = np.random.default_rng(8).normal(size=SAMPLES)

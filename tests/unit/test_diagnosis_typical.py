@@ -26,7 +26,7 @@ class Struck:
         self.fit[::4] = False
         self.held_out = ~self.fit
         number = np.arange(SAMPLES) * PARTS // SAMPLES
-        self.blocks = Blocks(number[self.fit])
+        self.blocks, self.held_blocks = Blocks(number[self.fit]), Blocks(number[self.held_out])
         self.left = np.where(number == 5, blow, 1.0) * np.where(np.arange(SAMPLES) % 2, 1.0, -1.0)
         self.spans = (slice(0, int(self.fit.sum())),)
         self.unseen: dict[str, frozenset[int]] = {}
