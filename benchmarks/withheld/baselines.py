@@ -39,7 +39,7 @@ def no_refit(bench: str, folder: Path) -> Solved:
     factors = factors_of(known)
     step = suitable_step(trials, factors)
     coarse = Simulator(trials, step, EVERY)
-    base = _as_given(coarse, Hypothesis(factors=()))
+    base = fit(coarse, Hypothesis(factors=()), np.zeros(0), steps=0)
     screen = Screen(coarse, base, np.zeros((int(coarse.fit.sum()), 0)))
     looked: list[tuple[Suspect, Look | Fitted]] = []
     for suspect in suspects(base.hypothesis, {}, candidates(trials[0].scene)):
@@ -60,29 +60,10 @@ def no_refit(bench: str, folder: Path) -> Solved:
     return _claimed(bench, folder, ends, Simulator(trials, step), time.monotonic() - start)
 
 
-def _as_given(simulator: Simulator, hypothesis: Hypothesis) -> Fitted:
-    """The nominal model at the data sheet's values, as a fit with nothing to fit."""
-    residuals = simulator.residuals(hypothesis, [np.zeros(hypothesis.size)])[0]
-    assert residuals is not None
-    return Fitted(
-        hypothesis=hypothesis,
-        z=np.zeros(hypothesis.size),
-        residuals=residuals,
-        cost=simulator.blocks.cost(residuals[simulator.fit]),
-        curvature=np.zeros((hypothesis.size, hypothesis.size)),
-        converged=True,
-        steps=0,
-        chi_fit=chi_square(residuals, simulator.fit),
-        chi_held=chi_square(residuals, simulator.held_out),
-        typical=2.0 * simulator.blocks.cost(residuals[simulator.fit]) / max(int(simulator.fit.sum()), 1),
-        misfit_held=simulator.held_blocks.cost(residuals[simulator.held_out]),
-    )
-
-
 def _claimed(bench: str, folder: Path, ends: list[Found], fine: Simulator, seconds: float) -> Solved:
     """The best of these fits as an answer, its gap on all samples."""
     names = names_of(bench)
-    given = _as_given(fine, Hypothesis(factors=()))
+    given = fit(fine, Hypothesis(factors=()), np.zeros(0), steps=0)
     gap = {"nominal": given.chi_held**0.5, "refit": given.chi_held**0.5, "effect": given.chi_held**0.5, "floor": 1.0}
     if not ends or ends[0].log_odds < ODDS:
         return Solved(answer=answer_of(folder.name, Finding(verdict="none", ranking={("none", ""): 1.0}, gap=gap, seconds=seconds), names))

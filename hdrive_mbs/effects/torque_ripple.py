@@ -43,6 +43,7 @@ class TorqueRipple(Effect):
     signature: ClassVar[str] = "torque and speed vibration at a fixed order of the motor, in proportion to its torque for the relative part"
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("amplitude", "phase"), ("second_amplitude", "second_phase"))
     starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"order": MOTOR_ORDERS, "relative": (0.0, 1e-4)}
+    # both: c > 0 turns with the phase of A and hides it where there is no c, and of c alone A shows no phase
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         body = moving_body(self, draft, place)

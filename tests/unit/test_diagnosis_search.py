@@ -137,10 +137,10 @@ def test_more_is_left_over_beside_a_strong_cause(simulator: Simulator) -> None:
 
 def test_a_first_look_begins_where_a_change_hardly_changes_anything_and_takes_every_decisive_start() -> None:
     scene = rotor_bench.bench().scene
-    changes = {item.effect.change for one in candidates(scene, [hm.SupportStiffnessChange]) for item in one.first}
+    changes = {item.effect.change for one in candidates(scene, [hm.SupportStiffnessChange]) for item in one.first}  # type: ignore[attr-defined]
     assert changes == {1e-4}
     for one in candidates(scene, [hm.HiddenModeSupport]):
-        assert {item.effect.natural_frequency for item in one.first} == set(hm.HiddenModeSupport.starts["natural_frequency"])
+        assert {item.effect.natural_frequency for item in one.first} == set(hm.HiddenModeSupport.starts["natural_frequency"])  # type: ignore[attr-defined]
 
 
 def test_held_parameters_stay_near_the_data_sheet(simulator: Simulator) -> None:
@@ -794,12 +794,12 @@ def test_what_swings_unseen_at_the_place_of_the_gap_begins_at_frequencies_close_
     [hidden] = [item for item in asked if item.kind is hm.HiddenModeSupport]
     [plain] = [item for item in tried if item.kind is hm.HiddenModeSupport and item.at == "bearing_1"]
     for starts, given in ((hidden.first, plain.first), (hidden.starts, plain.starts)):
-        rates = sorted({item.effect.natural_frequency for item in starts})
+        rates = sorted({item.effect.natural_frequency for item in starts})  # type: ignore[attr-defined]
         assert (rates[0], rates[-1]) == (pytest.approx(100.0), pytest.approx(1500.0))  # all that the field says is typical
         assert max(b / a for a, b in itertools.pairwise(rates)) < 1.2
-        ratios = {item.effect.ratio for item in given}
+        ratios = {item.effect.ratio for item in given}  # type: ignore[attr-defined]
         assert len(starts) == len(rates) * len(ratios)
-        assert {item.effect.ratio for item in starts} == ratios
+        assert {item.effect.ratio for item in starts} == ratios  # type: ignore[attr-defined]
 
 
 def drags(*places: str) -> Hypothesis:

@@ -13,7 +13,8 @@ import pytest
 
 pytest.importorskip("pyarrow", reason="withheld cases are Parquet files")
 
-from benchmarks.withheld import methods, run, scoring
+import hdrive_mbs as hm
+from benchmarks.withheld import baselines, methods, run, scoring
 from benchmarks.withheld.answer import NAMED, answer_of, failed_answer
 from benchmarks.withheld.calibrate import grid, known_constants
 from benchmarks.withheld.calibration import chance_error, curve, expected_error, log_loss
@@ -25,9 +26,6 @@ from benchmarks.withheld.raw import constants, finding_again
 from benchmarks.withheld.regression import Equation, chosen, column
 from hdrive_mbs.diagnosis import verdict
 from hdrive_mbs.diagnosis.candidates import candidates, known_effects
-from hdrive_mbs.diagnosis.fit import fit
-from hdrive_mbs.diagnosis.hypothesis import Hypothesis
-from hdrive_mbs.diagnosis.simulator import Simulator
 from models import drive_bench, rotor_bench
 from tests.unit import diagnosis_cases
 
@@ -463,15 +461,13 @@ def test_the_regression_takes_the_planted_term_and_none_from_noise() -> None:
 
 
 def test_chance_and_training_answer_in_the_same_format(tmp_path: Path) -> None:
-    from benchmarks.withheld.baselines import chance, training
-
     folder = tmp_path / "drive-c2"
     raw = stored_raw(log_odds=-5.0, held=1.02, null=1.01)
     raw["singles"][0]["misfit"] = 10.0
     (tmp_path / "drive-c2.json").write_text(json.dumps(raw))
-    always = training("drive", folder, raw=tmp_path).answer
+    always = baselines.training("drive", folder, raw=tmp_path).answer
     assert claimed(always) == [("friction_motor", "motor")]  # although the evidence is against it
-    blind = [chance("drive", tmp_path / f"drive-c{k}").answer for k in range(300)]
+    blind = [baselines.chance("drive", tmp_path / f"drive-c{k}").answer for k in range(300)]
     said = {answer["verdict"] for answer in blind}
     assert said == {"none", "unknown", "effect", "parameter", "sensor"}
     names = {effect for effect, _ in DRIVE.causes.values()}
@@ -480,12 +476,19 @@ def test_chance_and_training_answer_in_the_same_format(tmp_path: Path) -> None:
     assert abs(right / 300 - share) < 4.0 * math.sqrt(share * (1.0 - share) / 300)  # 4 standard errors of a count
 
 
-def test_the_nominal_model_of_a_baseline_is_a_fit_with_nothing_to_fit() -> None:
-    from benchmarks.withheld.baselines import _as_given
-
-    bench = diagnosis_cases.bench()
-    simulator = Simulator(bench.trials(diagnosis_cases.quiet()[0]), 2.5e-4, 4)
-    given, fitted = _as_given(simulator, Hypothesis(factors=())), fit(simulator, Hypothesis(factors=()), np.zeros(0), steps=0)
-    for name in ("cost", "chi_fit", "chi_held", "typical", "misfit_held"):
-        assert getattr(given, name) == pytest.approx(getattr(fitted, name)), name
-    assert given.chi_fit > 1.0
+def test_the_baseline_without_joint_refit_names_a_strong_cause_where_the_data_sheet_is_right(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Drag of the load with the square of its speed, no parameter off: of what no fit saw noise is left."""
+    known = diagnosis_cases.bench()
+    planted = diagnosis_cases.records((hm.QuadraticDrag(coefficient=0.5), "load"), errors={})
+    monkeypatch.setattr(baselines, "bench_of", lambda bench: known)
+    monkeypatch.setattr(baselines, "records_of", lambda folder: planted[:1])
+    monkeypatch.setattr(baselines, "candidates", lambda scene: candidates(scene, [hm.QuadraticDrag, hm.KinematicError]))
+    answer = baselines.no_refit("drive", tmp_path / "drive-c1").answer
+    assert answer["gap"]["nominal"] > 1.5
+    unseen = sum(trial.held_out.sum() * len(trial.columns) for trial in known.trials(planted[0]))
+    assert answer["gap"]["effect"] == pytest.approx(1.0, abs=4.0 / math.sqrt(2.0 * unseen))  # 4 standard errors of a root mean square
+    named = DRIVE.name(("quadratic_drag", "load"))
+    assert answer["verdict"] == ("unknown" if named is None else "effect")
+    assert answer["where"][0]["at"] == DRIVE.place_of(("quadratic_drag", "load"))
