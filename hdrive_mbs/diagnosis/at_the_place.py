@@ -19,8 +19,9 @@ from hdrive_mbs.diagnosis.hypothesis import Added, searched_fields
 from hdrive_mbs.diagnosis.located import Located
 from hdrive_mbs.diagnosis.periods import Periods
 from hdrive_mbs.diagnosis.result import NOWHERE
-from hdrive_mbs.diagnosis.search import Depth, Report, search
+from hdrive_mbs.diagnosis.search import Depth, search
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.stages import Report
 from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.team import Team
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -12,42 +11,22 @@ import numpy as np
 from hdrive_mbs.diagnosis.all_samples import CANNOT_RUN, as_given, on_all_samples
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate
-from hdrive_mbs.diagnosis.choosing import enough, leaves
+from hdrive_mbs.diagnosis.choosing import leaves
 from hdrive_mbs.diagnosis.differences import jacobian, unseen_in
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.later import Later
 from hdrive_mbs.diagnosis.located import Located, bends, located
-from hdrive_mbs.diagnosis.pairs import alone, contenders, joined, moved, swapped
-from hdrive_mbs.diagnosis.search import Depth, Report, Search, fit_nominal, search
+from hdrive_mbs.diagnosis.search import Search, fit_nominal, search
+from hdrive_mbs.diagnosis.second_cause import LEFT, second_cause, wants_second
 from hdrive_mbs.diagnosis.simulator import Simulator
-from hdrive_mbs.diagnosis.suspects import suspects
+from hdrive_mbs.diagnosis.stages import Report, under
 from hdrive_mbs.diagnosis.tasks import Found, proven, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
-from hdrive_mbs.diagnosis.verdict import LITTLE, TIED, left, takes_most
+from hdrive_mbs.diagnosis.verdict import TIED, left
 from hdrive_mbs.errors import AnalysisError
 
-LEFT = LITTLE
-"""Mean square left by the best single cause, on what its fit saw and did not see, that is worth all that is done for a second one;
-more beside a strong one (``enough``).  In our own third drive set a lag beside a drag left 1.19 and 1.48 of 46, and was not looked for
-at 1.2."""
-SLIGHT = 1.03
-"""Likewise, above which a second one is looked for at all: of 48 right single causes of our own rotor sets 9 to 14, opened, 42 leave
-1.014 at most in the search and six whose laws are not exact 1.06 and more (tests/unit/test_verdict_constants.py), and a mass that swings
-on a support beside a bow left 1.07 of 400 (c03 of the thirteenth).  Up to LEFT the search for it goes on only with one that takes most of
-that (``takes_most``)."""
-SCATTER = 4.0
-"""Standard deviations of the mean square of noise, sqrt(2/n) of n samples, that it has to lie above 1 besides, up to LEFT: in 750
-samples of a real axis (KUKA KR300) a delay left 1.05, of which a second one of 0.1 ms took all."""
-TAKEN = 0.05
-"""Share of the nominal model's cost above that of noise that the best single cause has to take away before a second one is looked
-for: beside one that explains next to nothing a second would be another first.  Also of the first one's cost above that of noise, which
-a second has to take away before the first is looked for again beside it."""
-SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
-"""Of the search for a second cause."""
-GLANCE = replace(SHALLOW, held=False)
-"""Likewise beside a first one that leaves little: what is missing has bent little then."""
 SINGLES = 3
 """Labels that are fitted on all samples at least."""
 ALIKE = 6
@@ -55,8 +34,6 @@ ALIKE = 6
 torsion, say, where only some of them would be named as tied otherwise."""
 CLOSE = 0.02
 """Share of the best law's log odds within which another law of the same cause is fitted on all samples too."""
-JOINED = 3
-"""Other single causes that the best one is joined with, besides the best at the place of the gap."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,19 +54,6 @@ class Evidence:
     singles: tuple[Found, ...]
     pairs: tuple[Found, ...]
     place: Located
-
-
-def wants_second(null: Fitted, first: Found, samples: int) -> bool:
-    """Whether the best single cause explains something and leaves something.
-
-    samples : fitted ones; noise alone costs half of their number
-    """
-    return first.log_odds > TAKEN * max(null.cost - 0.5 * samples, 0.0) and left(first.fitted) > slight(null, samples)
-
-
-def slight(null: Fitted, samples: int) -> float:
-    """Mean square that is little and still not noise."""
-    return min(max(SLIGHT, 1.0 + SCATTER * math.sqrt(2.0 / samples)), enough(null, LEFT))
 
 
 def serious(labels: Sequence[Found]) -> tuple[Found, ...]:
@@ -157,59 +121,7 @@ def _there(
     """What laws of the place of the gap explain of it, if the search left something."""
     if place is None or not leaves(min((left(item.fitted) for item in single.found), default=left(null)), null, LEFT):
         return ()
-    return at_the_place(team, coarse, null, place, tried, partial(_said, said, "at the place of the gap"))
-
-
-def _second(
-    team: Team,
-    coarse: Simulator,
-    null: Fitted,
-    groups: Mapping[str, Sequence[str]],
-    tried: Sequence[Candidate],
-    single: Search,
-    there: Sequence[Found],
-    said: Report,
-) -> tuple[Search | None, tuple[Found, ...], tuple[Found, ...]]:
-    """Where one cause leaves something: a search for a second one, pairs that may be the best, and second causes without the first.
-
-    Causes that are known are put together first, and a second one is searched for where none of these pairs explains the rest.
-    """
-    first = single.found[0] if single.found else None
-    samples = int(np.count_nonzero(coarse.fit))
-    if first is None or not wants_second(null, first, samples):
-        return None, (), ()
-    rivals = {item.suspect.label: item for item in (*single.labels[1 : JOINED + 1], *there[:1])}
-    together = joined(team, coarse, first, tuple(rivals.values()))
-    pair = None
-    much = left(first.fitted) > enough(null, LEFT)
-    if not any(left(item.fitted) < (enough(null, LEFT) if much else slight(null, samples)) for item in together):
-        depth = SHALLOW if much else GLANCE
-        pair = search(team, coarse, first.fitted, groups, tried, depth=depth, report=partial(_said, said, "second cause"))
-        together = [*pair.found, *together]
-    if not together:
-        return pair, (), ()
-    best = min(together, key=lambda item: item.fitted.cost)
-    if not (much or takes_most(left(first.fitted), left(best.fitted))):
-        return pair, (), ()
-    said("exchanging causes of the best pair", 0, 1)
-    known = [*together, *swapped(team, coarse, best, first.suspect.label, single.labels[:SINGLES])]
-    found = contenders(team, coarse, known, first)
-    everything = suspects(null.hypothesis, groups, tried)
-    others = alone(team, coarse, found[0], everything)
-    gained = first.fitted.cost - found[0].fitted.cost
-    if left(found[0].fitted) > enough(null, LEFT) and gained > TAKEN * max(first.fitted.cost - 0.5 * samples, 0.0):
-        # the first cause was chosen while the second was missing
-        for item in others:
-            more = search(team, coarse, item.fitted, groups, tried, depth=SHALLOW, report=partial(_said, said, "first cause again"))
-            found = contenders(team, coarse, [*found, *more.found], first)
-    pairs = contenders(team, coarse, [*found, *moved(team, coarse, found, tried)], first)
-    if pairs[0].suspect.label not in {item.suspect.label for item in others}:
-        others += alone(team, coarse, pairs[0], everything)
-    return pair, pairs, tuple(others)
-
-
-def _said(said: Report, about: str, stage: str, done: int, total: int) -> None:
-    said(f"{about}: {stage}", done, total)
+    return at_the_place(team, coarse, null, place, tried, partial(under, said, "at the place of the gap"))
 
 
 def gather(
@@ -236,7 +148,7 @@ def gather(
     place = None if asked is None else _told_where(team, asked, said)
     there = _there(team, coarse, null, single, place, tried, said)
     single = _with(single, there)
-    pair, double, others = _second(team, coarse, null, groups, tried, single, there, said)
+    pair, double, others = second_cause(team, coarse, null, groups, tried, single, there, said)
     single = _with(single, others)
     if double and not wants_second(null, single.found[0], int(np.count_nonzero(coarse.fit))):
         double = ()  # its second cause stood beside a wrong first one: had it been found at once, no other would have been looked for

@@ -22,6 +22,7 @@ from hdrive_mbs.diagnosis.periods import Periods
 from hdrive_mbs.diagnosis.scans import fits_from, scan, worth_a_scan
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.stages import Report
 from hdrive_mbs.diagnosis.suspects import Label, Suspect, simplest, suspects
 from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, NEAR, Found, Task, cheapest, further, run_task, scored, those_that_ran
 from hdrive_mbs.diagnosis.team import Team
@@ -29,7 +30,6 @@ from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import ODDS, left, stands
 from hdrive_mbs.errors import AnalysisError
 
-Report = Callable[[str, int, int], None]
 Begin = Callable[[Simulator, Fitted], StandsOut]
 
 FAR = 1.3

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.diagnosis import all_samples
+from hdrive_mbs.diagnosis import all_samples, second_cause
 from hdrive_mbs.diagnosis import gather as gather_
 from hdrive_mbs.diagnosis.all_samples import Last, on_all_samples
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
@@ -21,7 +21,7 @@ from hdrive_mbs.diagnosis.diagnose import factors_of, strongest_first
 from hdrive_mbs.diagnosis.differences import jacobian
 from hdrive_mbs.diagnosis.fit import Fitted, fit, secant
 from hdrive_mbs.diagnosis.from_the_best import bent, other_laws, unfinished
-from hdrive_mbs.diagnosis.gather import ALIKE, SINGLES, close_laws, serious, slight, wants_second
+from hdrive_mbs.diagnosis.gather import ALIKE, SINGLES, close_laws, serious
 from hdrive_mbs.diagnosis.ground import LIKELY, held, is_bent, screen_from
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
@@ -31,6 +31,7 @@ from hdrive_mbs.diagnosis.pairs import alone, contenders, moved
 from hdrive_mbs.diagnosis.result import Cause, Place
 from hdrive_mbs.diagnosis.screening import FAINTEST, Look, Screen, Starts
 from hdrive_mbs.diagnosis.search import ENOUGH, Depth, Search, _Work, fit_nominal, is_inexact, search
+from hdrive_mbs.diagnosis.second_cause import slight, wants_second
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, simplest, suspects
 from hdrive_mbs.diagnosis.tasks import FIRST, Found, Task, proven, run_task, scored
@@ -909,10 +910,10 @@ def test_the_first_of_two_causes_is_looked_for_again_beside_the_second_where_bot
         "alone": lambda *some: [second],
         "contenders": lambda team, coarse, some, first: tuple(sorted(some, key=lambda item: item.fitted.cost))[:1],
     }.items():
-        monkeypatch.setattr(f"hdrive_mbs.diagnosis.gather.{name}", made)
+        monkeypatch.setattr(f"hdrive_mbs.diagnosis.second_cause.{name}", made)
     single = Search(null, (found(2.0, 6000.0, "load"),))
     with Team(1) as team:
-        _, best, others = gather_._second(team, simulator, null, {}, [], single, (), lambda *said: None)
+        _, best, others = second_cause.second_cause(team, simulator, null, {}, [], single, (), lambda *said: None)
     assert asked == (["load", "motor"] if again else ["load"])
     assert best == (pairs["motor" if again else "load"],)
     assert ends == [best]
@@ -943,7 +944,7 @@ def test_a_pair_is_given_up_where_its_second_cause_does_without_the_first(
         "fit_nominal": lambda coarse, factors: null,
         "search": lambda *some, **how: Search(null, (found(3.4, 4400.0, "load"),)),
         "_there": lambda *some: (),
-        "_second": lambda *some: (None, (pair,), (found(alone_leaves, 0.0, "motor"),)),
+        "second_cause": lambda *some: (None, (pair,), (found(alone_leaves, 0.0, "motor"),)),
         **dict.fromkeys(("scored", "proven"), lambda item, base: dataclasses.replace(item, log_odds=base.cost - item.fitted.cost)),
         "on_all_samples": on_all,
     }.items():

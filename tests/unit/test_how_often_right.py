@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from benchmarks.withheld.case_score import interval
-from hdrive_mbs.diagnosis import gather, nearly, verdict
+from hdrive_mbs.diagnosis import nearly, second_cause, verdict
 
 ROOT = Path(__file__).parents[2]
 OWN = ROOT / "benchmarks" / "withheld" / "own"
@@ -53,8 +53,8 @@ def test_the_figures_of_the_verdict_are_those_of_the_program() -> None:
         "what an effect has to take away at least": f"{verdict.TRACE}",
         "a claim has to take of the gap's logarithm, or a single cause of the gap itself": f"{verdict.EXPLAINED:.0%}, {verdict.LARGE:.0%}",
         "a second cause is looked for where the best leaves more than": (
-            f"{gather.SLIGHT}, of fewer than {2.0 * (gather.SCATTER / (gather.SLIGHT - 1.0)) ** 2:,.0f} samples more,"
-            f" up to {gather.LEFT:.2f}"
+            f"{second_cause.SLIGHT}, of fewer than {2.0 * (second_cause.SCATTER / (second_cause.SLIGHT - 1.0)) ** 2:,.0f} samples more,"
+            f" up to {second_cause.LEFT:.2f}"
         ),
         "... and is claimed with log odds over the first of": f"{verdict.SECOND:g}, and {100 * verdict.MORE:g} % {rest}",
         "two causes cannot be told apart within log odds of": f"{verdict.TIED:g}",

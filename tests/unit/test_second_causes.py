@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.diagnosis import gather
+from hdrive_mbs.diagnosis import second_cause
 from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
@@ -74,7 +74,7 @@ def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_anything
     fitted: tuple[Simulator, Fitted], monkeypatch: pytest.MonkeyPatch, leaves: float, second: float, exchanged: bool | None
 ) -> None:
     simulator, base = fitted
-    monkeypatch.setattr(gather, "SCATTER", 0.0)  # as if its samples were many
+    monkeypatch.setattr(second_cause, "SCATTER", 0.0)  # as if its samples were many
     null = dataclasses.replace(base, cost=1e5, chi_fit=2.0, chi_held=2.0)
     one, two = found(base, (DRAG,), leaves, 60_000.0), found(base, (DRAG, RIPPLE), second, 61_000.0)
     asked: list[str] = []
@@ -84,7 +84,7 @@ def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_anything
             asked.append(name)
             return answer
 
-        monkeypatch.setattr(gather, name, answering)
+        monkeypatch.setattr(second_cause, name, answering)
 
     named("joined", [])
     named("search", Search(base, (two,)))
@@ -93,7 +93,9 @@ def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_anything
     named("moved", [])
     named("contenders", (two,))
     with Team(1) as team:
-        search, pairs, _ = gather._second(team, simulator, null, {}, [], Search(null, (one,)), (), lambda stage, done, total: None)
+        search, pairs, _ = second_cause.second_cause(
+            team, simulator, null, {}, [], Search(null, (one,)), (), lambda stage, done, total: None
+        )
     assert ("search" in asked) is (exchanged is not None)
     assert ("swapped" in asked) is (exchanged is True)
     assert pairs == ((two,) if exchanged else ())

@@ -16,7 +16,7 @@ from benchmarks.withheld.calibrate import Stored, rows_with, stored
 from benchmarks.withheld.calibration import expected_error, log_loss
 from benchmarks.withheld.case_score import Row, shares
 from benchmarks.withheld.names import names_of
-from hdrive_mbs.diagnosis.gather import SLIGHT
+from hdrive_mbs.diagnosis.second_cause import SLIGHT
 from hdrive_mbs.diagnosis.verdict import MORE, OTHER_AT_FIT
 
 OWN = Path(__file__).parents[2] / "benchmarks" / "withheld" / "own"
