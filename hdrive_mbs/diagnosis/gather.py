@@ -17,6 +17,7 @@ from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.later import Later
 from hdrive_mbs.diagnosis.located import Located, bends, located
+from hdrive_mbs.diagnosis.nominal_again import nominal_again
 from hdrive_mbs.diagnosis.search import Search, fit_nominal, search
 from hdrive_mbs.diagnosis.second_cause import LEFT, second_cause, wants_second
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -24,7 +25,7 @@ from hdrive_mbs.diagnosis.stages import Report, under
 from hdrive_mbs.diagnosis.tasks import Found, proven, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
-from hdrive_mbs.diagnosis.verdict import TIED, left
+from hdrive_mbs.diagnosis.verdict import TIED, left, takes_most
 from hdrive_mbs.errors import AnalysisError
 
 SINGLES = 3
@@ -124,6 +125,32 @@ def _there(
     return at_the_place(team, coarse, null, place, tried, partial(under, said, "at the place of the gap"))
 
 
+def _first(
+    team: Team,
+    coarse: Simulator,
+    fine: Simulator,
+    factors: Sequence[Factor],
+    groups: Mapping[str, Sequence[str]],
+    tried: Sequence[Candidate],
+    said: Report,
+) -> tuple[Simulator, Simulator, Fitted, Search]:
+    """The nominal model and a search for one cause, with the records as they know what shows in which of them.
+
+    The model is fitted again where the search shows that it had ended in a hollow, and all is looked for again where little is left then.
+    """
+    [null] = team.map(fit_nominal, coarse, [tuple(factors)], partial(said, "fitting the nominal model"))
+    while True:
+        unseen = _unseen(coarse, null)
+        coarse, fine = coarse.knowing(unseen), fine.knowing(unseen)
+        single = search(team, coarse, null, groups, tried, report=said)
+        before, better = null, nominal_again(team, coarse, null, single.found)
+        if better is None:
+            return coarse, fine, null, single
+        null = better
+        if not takes_most(left(before), left(null)):
+            return coarse, fine, null, _with(replace(single, base=null, found=()), single.found)
+
+
 def gather(
     coarse: Simulator,
     fine: Simulator,
@@ -141,10 +168,7 @@ def gather(
     """
     said = report or (lambda stage, done, total: None)
     asked = _ask_where(team, fine, factors)
-    [null] = team.map(fit_nominal, coarse, [tuple(factors)], partial(said, "fitting the nominal model"))
-    unseen = _unseen(coarse, null)
-    coarse, fine = coarse.knowing(unseen), fine.knowing(unseen)
-    single = search(team, coarse, null, groups, tried, report=said)
+    coarse, fine, null, single = _first(team, coarse, fine, factors, groups, tried, said)
     place = None if asked is None else _told_where(team, asked, said)
     there = _there(team, coarse, null, single, place, tried, said)
     single = _with(single, there)
