@@ -39,12 +39,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--oracle", type=Path, help="answers of the method oracle")
     parser.add_argument("--baseline", action="append", default=[], metavar="NAME=FILE", help="answers of another method")
     options = parser.parse_args(arguments)
+    if nameless := [item for item in options.baseline if not all(item.partition("="))]:
+        parser.error(f"--baseline {nameless[0]}: give it as NAME=FILE")
     baselines = dict(item.split("=", 1) for item in options.baseline)
     try:
         truths = read_truths(options.truths)
-        answers = {"diagnosis": read_answers(options.answers)}
-        answers |= {name: read_answers(Path(path)) for name, path in baselines.items()}
-        oracle = read_answers(options.oracle) if options.oracle else {}
+        answers = {"diagnosis": answers_to(truths, options.answers)}
+        answers |= {name: answers_to(truths, Path(path)) for name, path in baselines.items()}
+        oracle = answers_to(truths, options.oracle) if options.oracle else {}
     except (OSError, ValueError) as error:
         print(error, file=sys.stderr)
         return 1
@@ -62,6 +64,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     write_results(options.out, numbers, text, figures)
     print(text.split("\n## ")[0])
     return 0
+
+
+def answers_to(truths: Mapping[str, Mapping[str, Any]], path: Path) -> dict[str, dict[str, Any]]:
+    """Answers of a file, by case.  A case without an answer counts as wrong, but a file without any is another one than was meant.
+
+    Raises FileNotFoundError where there is no file, ValueError where it answers none of the cases.
+    """
+    if not path.is_file():
+        raise FileNotFoundError(f"{path}: no such file; answers are made with python -m benchmarks.withheld.run --out {path}.")
+    answers = read_answers(path)
+    if not truths.keys() & answers.keys():
+        raise ValueError(f"{path} answers none of the {len(truths)} cases, {', '.join(sorted(truths)[:3])} and so on: another set's?")
+    return answers
 
 
 def rows_of(truths: Mapping[str, Mapping[str, Any]], answers: Mapping[str, Mapping[str, Any]]) -> list[Row]:

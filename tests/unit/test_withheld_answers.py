@@ -368,6 +368,26 @@ def test_own_scores_agree_with_the_scoring_of_round_1(tmp_path: Path) -> None:
         assert f"{words} {own[name].right}/{own[name].of}" in said
 
 
+def test_answers_that_are_not_there_or_are_those_of_another_set_are_not_scored_as_wrong(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    paths = {name: tmp_path / f"{name}.json" for name in ("answers", "truths", "others")}
+    paths["answers"].write_text(json.dumps(ANSWERS))
+    paths["truths"].write_text(json.dumps(TRUTHS))
+    paths["others"].write_text(json.dumps([ANSWERS[0] | {"case": "rotor-c1"}]))
+    given = [str(paths["answers"]), str(paths["truths"]), "--out", str(tmp_path / "results")]
+    for more, words in (
+        (["--baseline", f"other={tmp_path / 'absent.json'}"], "absent.json: no such file"),
+        (["--oracle", str(paths["others"])], "others.json answers none of the 7 cases, drive-c1"),
+    ):
+        assert scoring.main([*given, *more]) == 1
+        assert words in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        scoring.main([*given, "--baseline", "other"])
+    assert "--baseline other: give it as NAME=FILE" in capsys.readouterr().err
+    assert not (tmp_path / "results").exists()
+
+
 def test_scoring_writes_report_numbers_and_pictures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     paths = {name: tmp_path / f"{name}.json" for name in ("answers", "truths", "oracle")}
     paths["answers"].write_text(json.dumps(ANSWERS))
