@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -75,3 +76,26 @@ def test_all_is_looked_for_again_from_where_the_nominal_model_comes_to_then(monk
     assert bases[1] < 1.05
     assert found.verdict == "none"
     assert abs(found.gap.refit.value - 1.0) < 0.02
+
+
+def test_a_model_that_gains_little_so_is_what_causes_are_held_against_without_a_new_search(
+    simulator: Simulator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    null = there(simulator, NOMINAL, HOLLOW)
+    better = dataclasses.replace(null, cost=null.cost - 40.0, chi_fit=0.99 * null.chi_fit)
+    suspect = Suspect(("quadratic_drag", "motor"), "QuadraticDrag", (NOMINAL,), (NOMINAL,))
+    found = Found(suspect, dataclasses.replace(null, cost=null.cost - 100.0), log_odds=100.0)
+    asked: list[Fitted] = []
+
+    def search(team: Team, simulator: Simulator, base: Fitted, *more: Any, **how: Any) -> Search:
+        asked.append(base)
+        return Search(base, (found,))
+
+    monkeypatch.setattr(gather, "fit_nominal", lambda simulator, factors: null)
+    monkeypatch.setattr(gather, "search", search)
+    monkeypatch.setattr(gather, "nominal_again", lambda *some: better)
+    with Team(1) as team:
+        _, _, used, single = gather._first(team, simulator, simulator, NOMINAL.factors, {}, [], lambda *said: None)
+    assert asked == [null]
+    assert used is single.base is better
+    assert single.found[0].log_odds == pytest.approx(100.0 - 40.0)
