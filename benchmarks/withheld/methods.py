@@ -45,12 +45,12 @@ def records_of(folder: Path) -> list[Record]:
     return [read_record(path) for path in sorted(folder.glob("*.parquet"))]
 
 
-def full(bench: str, folder: Path, workers: int = 1) -> Solved:
+def full(bench: str, folder: Path, workers: int = 1, search_seconds: float | None = None) -> Solved:
     """The diagnosis as it is delivered, without pictures."""
     known, kept = bench_of(bench), []
     start = time.process_time()
     with Memory() as memory:
-        diagnosis = diagnose(known, records_of(folder), workers=workers, pictures=False, watch=kept.append)
+        diagnosis = diagnose(known, records_of(folder), workers=workers, pictures=False, watch=kept.append, search_seconds=search_seconds)
     evidence: Evidence = kept[0]
     raw = {
         "case": folder.name,
@@ -63,6 +63,7 @@ def full(bench: str, folder: Path, workers: int = 1) -> Solved:
         "places": places_of(diagnosis),
         "verdict": diagnosis.verdict,
         "notes": list(diagnosis.notes),
+        "warnings": list(diagnosis.warnings),
     }
     return Solved(answer=answer_of(folder.name, finding_of(diagnosis), names_of(bench)), raw=raw)
 

@@ -44,17 +44,21 @@ class Job:
     """Answers one case by a method; its point holds the folder of the case.
 
     more : what the method asks for besides, (name, path);  each : processes for the diagnosis of one case
+    search_seconds : after which the search looks for no more
     """
 
     bench: str
     method: str
     more: tuple[tuple[str, str], ...] = ()
     each: int = 1
+    search_seconds: float | None = None
 
     def __call__(self, point: Mapping[str, Any]) -> dict[str, str]:
         more: dict[str, Any] = {name: Path(path) for name, path in self.more}
         if self.each > 1:
             more["workers"] = self.each
+        if self.search_seconds is not None:
+            more["search_seconds"] = self.search_seconds
         solved = method(self.method)(self.bench, Path(point["folder"]), **more)
         return {"answer": _text(solved.answer), "raw": _text(solved.raw)}
 
@@ -74,6 +78,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         help="use the dask cluster of this scheduler, like tcp://host:8786; its workers see the same folders and have this on PYTHONPATH",
     )
     parser.add_argument("--method", choices=tuple(METHODS), default="full", help="the diagnosis, or a baseline")
+    parser.add_argument("--search-seconds", type=float, metavar="S", help="look for no more after these, with --method full")
     parser.add_argument("--raw", type=Path, help="raw figures of the diagnosis, for --method training")
     parser.add_argument("--truths", type=Path, help="opened truths, for --method oracle")
     again = parser.add_mutually_exclusive_group()
@@ -89,9 +94,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error("--workers must be at least 0")
     if options.each < 1 or (options.each > 1 and (options.workers or options.scheduler or options.method != "full")):
         parser.error("--each is at least 1, and more than that goes with --workers 0 and --method full alone")
+    if options.search_seconds is not None and options.method != "full":
+        parser.error("--search-seconds goes with --method full alone")
     more = tuple((name, str(path)) for name in ("raw", "truths") if (path := getattr(options, name)))
     return answer_cases(
-        Job(options.bench, options.method, more, options.each),
+        Job(options.bench, options.method, more, options.each, options.search_seconds),
         cases,
         options.out,
         workers=options.workers,
@@ -178,7 +185,8 @@ def write_answers(path: Path, answers: Mapping[str, Mapping[str, Any]]) -> Path:
 def about(job: Job) -> dict[str, Any]:
     """Method, constants of the verdict, commit and machine."""
     constants = {name: value for name, value in vars(verdict).items() if name.isupper() and isinstance(value, float)}
-    found = {"bench": job.bench, "method": job.method, "processes_each": job.each}
+    found: dict[str, Any] = {"bench": job.bench, "method": job.method, "processes_each": job.each}
+    found |= {} if job.search_seconds is None else {"search_seconds": job.search_seconds}
     return {**found, "commit": commit(SOURCES), "verdict": constants, "machine": machine()}
 
 

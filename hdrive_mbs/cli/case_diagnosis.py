@@ -64,6 +64,7 @@ class CaseDiagnosis:
     only : classes or families of effects that are tried; all if empty
     reading : how records are read;  program : hash of the program, so that another one makes another job
     work : folder in which fits are kept while a case is not finished; not used by a worker that does not see it
+    search_seconds : after which the search of a case looks for no more [s]
     """
 
     bench: GivenFile | Scene
@@ -72,6 +73,7 @@ class CaseDiagnosis:
     reading: Mapping[str, Any]
     program: str
     work: str
+    search_seconds: float | None = None
 
     def __call__(self, point: Mapping[str, Any]) -> dict[str, Any]:
         from hdrive_mbs.records.reading import record_files
@@ -86,7 +88,7 @@ class CaseDiagnosis:
         from hdrive_mbs.diagnosis.diagnose import diagnose as run
 
         kept = Path(self.work) / str(point["case"]) if Path(self.work).is_dir() else None
-        result = run(bench, measured, candidates=_living(kinds), workers=1, folder=kept)
+        result = run(bench, measured, candidates=_living(kinds), workers=1, folder=kept, search_seconds=self.search_seconds)
         return {**figures(result), "report": report_files(result)}
 
     def made_of(self) -> tuple[Scene, dict[str, Any]]:
@@ -96,6 +98,7 @@ class CaseDiagnosis:
             "only": self.only,
             "reading": dict(self.reading),
             "program": self.program,
+            "search_seconds": self.search_seconds,
         }
         if isinstance(self.bench, Scene):
             return self.bench, settings

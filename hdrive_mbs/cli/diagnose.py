@@ -17,7 +17,18 @@ import typer
 from hdrive_mbs.cli.options import JsonFile
 from hdrive_mbs.cli.output import write_json
 from hdrive_mbs.cli.python_file import imported, lines_named, own_types
-from hdrive_mbs.cli.records_options import BenchFile, Channels, HeldOut, Only, OwnEffects, Repairs, TimeColumn, Units, reading_of
+from hdrive_mbs.cli.records_options import (
+    BenchFile,
+    Channels,
+    HeldOut,
+    Only,
+    OwnEffects,
+    Repairs,
+    SearchSeconds,
+    TimeColumn,
+    Units,
+    reading_of,
+)
 from hdrive_mbs.cli.scene_source import load_file
 from hdrive_mbs.cli.stages import stage_bars
 from hdrive_mbs.errors import FileFormatError, HdriveError, SceneError, unknown_place
@@ -49,6 +60,7 @@ def diagnose(
     repair: Repairs = None,
     held_out: HeldOut = None,
     workers: Annotated[int | None, typer.Option(help="Processes on this machine; 2 where it has two cores.")] = None,
+    search_seconds: SearchSeconds = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with an interrupted diagnosis in --out.")] = False,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder for report, pictures and the improved scene.")] = None,
     json: JsonFile = None,
@@ -67,7 +79,16 @@ def diagnose(
     try:
         with stage_bars() as report:
             cores = workers or min(2, os.cpu_count() or 1)
-            result = run(chosen, measured, candidates=kinds, workers=cores, folder=work, held_out=held_out or (), report=report)
+            result = run(
+                chosen,
+                measured,
+                candidates=kinds,
+                workers=cores,
+                folder=work,
+                held_out=held_out or (),
+                search_seconds=search_seconds,
+                report=report,
+            )
     except KeyboardInterrupt:
         print(f"interrupted; what is done is kept in {work}. The same command with --resume goes on.", file=sys.stderr)
         raise typer.Exit(130) from None

@@ -32,6 +32,12 @@ HeldOut = Annotated[
     list[str] | None,
     typer.Option("--held-out", metavar="RECORD", help="A record that no fit sees, for the gap (several times); else a quarter of each."),
 ]
+SearchSeconds = Annotated[
+    float | None,
+    typer.Option(
+        metavar="S", help="Look for no more after so many seconds, where what was found leaves something; an answer follows later."
+    ),
+]
 Repairs = Annotated[
     list[str] | None, typer.Option("--repair", metavar="FAULT=HOW", help="Repair records, e.g. gaps=interpolate (several times).")
 ]

@@ -19,6 +19,7 @@ from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.diagnosis.candidate_checks import check_candidates, left_out
 from hdrive_mbs.diagnosis.candidates import candidates as all_candidates
 from hdrive_mbs.diagnosis.column_names import as_the_bench_names_them
+from hdrive_mbs.diagnosis.deadline import Deadline
 from hdrive_mbs.diagnosis.drive_scale_checks import drives_scaled
 from hdrive_mbs.diagnosis.driven import driven_scenes
 from hdrive_mbs.diagnosis.estimates import effect_estimates, nominal_estimates
@@ -65,6 +66,7 @@ def diagnose(
     step: float | None = None,
     held_out: Sequence[str] | str = (),
     report: Report | None = None,
+    search_seconds: float | None = None,
     pictures: bool = True,
     watch: Callable[[Evidence], object] | None = None,
 ) -> Diagnosis:
@@ -80,14 +82,17 @@ def diagnose(
     step : of the integration [s], chosen if not given (``suitable_step``); what grows with it is run again with half of it
     held_out : names of records that neither a fit nor the localisation may see, on which the gap is then measured, and which the
         verdict asks whether a claim holds there too; if not given, a quarter of every record, in stretches
+    search_seconds : after which the search looks for no more where what it has found leaves something [s]; no end if not given.  What
+        is begun is finished and the last fits follow, so an answer comes later; a warning says what was left out
     report : called with (stage, done, total)
     pictures : with histories, located forces and maps for the report
     watch : called with all fits, for those who want more figures than the answer holds
 
-    Raises RecordError for records that do not fit the bench, ParameterError for a bad candidate, PlaceError for the name of a record
-    that there is not, AnalysisError where the nominal model cannot be simulated.
+    Raises RecordError for records that do not fit the bench, ParameterError for a bad candidate or time, PlaceError for the name of a
+    record that there is not, AnalysisError where the nominal model cannot be simulated.
     """
     started = time.monotonic()
+    deadline = Deadline(search_seconds)
     chosen = _records(records)
     known = bench if isinstance(bench, Bench) else assumed_bench(bench, chosen)
     chosen = tuple(as_the_bench_names_them(known, record) for record in chosen)
@@ -115,7 +120,7 @@ def diagnose(
     if folder is not None:
         inputs = {"records": chosen, "bench": known, "candidates": tried, "trials": (trials, factors, known.groups, step, EVERY)}
         journal = Journal(folder, inputs)
-    with Team(workers or 1, journal) as team:
+    with Team(workers or 1, journal, deadline) as team:
         evidence = gather(coarse, fine, factors, known.groups, tried, team, report)
     if watch is not None:
         watch(evidence)
@@ -141,7 +146,7 @@ def diagnose(
     return dataclasses.replace(
         found,
         notes=(*found.notes, *notes),
-        warnings=(*found.warnings, *warnings),
+        warnings=(*found.warnings, *warnings, *deadline.said()),
         inputs=driven,
         files=files,
         settings=settings,

@@ -122,6 +122,8 @@ def _there(
     """What laws of the place of the gap explain of it, if the search left something."""
     if place is None or not leaves(min((left(item.fitted) for item in single.found), default=left(null)), null, LEFT):
         return ()
+    if team.deadline.passed("laws at the place of the gap"):
+        return ()
     return at_the_place(team, coarse, null, place, tried, partial(under, said, "at the place of the gap"))
 
 

@@ -135,7 +135,8 @@ def search(
     )
     found = work.other_ways(found, base, everything)
     looks = {f"{suspect.law} at {suspect.label[1]}": cost for suspect, cost in first}
-    if how.laws > 1 and how.again and base.chi_fit > FAR and not any(item.fitted.typical < enough(base, ENOUGH) for item in found):
+    inexact = how.laws > 1 and how.again and base.chi_fit > FAR and not any(item.fitted.typical < enough(base, ENOUGH) for item in found)
+    if inexact and not team.deadline.passed("everything from parameters held near the data sheet"):
         likely = {suspect.label for suspect, _ in first[:SECOND_LOOKS]}
         more, _ = work.from_ground(held(simulator, base), base, [item for item in everything if item.label in likely or item.is_periodic])
         found = work.other_ways(cheapest([*found, *more]), base, everything)
@@ -225,7 +226,7 @@ class _Work:
         found = cheapest(self.fitted([(item.suspect, task) for item, task in zip(kept, further_, strict=True)], "fitting the best"))
         if far and not scanning and (not found or found[0].fitted.typical > SEEN):
             found = cheapest([*found, *self.scanned(everything)])
-        if found and leaves(found[0].fitted.typical, base, ENOUGH):
+        if found and leaves(found[0].fitted.typical, base, ENOUGH) and not self.team.deadline.passed("laws and places passed over"):
             found = cheapest([*found, *self._others([*not_begun(found, closer, best), *passed_over(found, first, chosen)])])
         return found, [(suspect, look.cost) for suspect, look in first]
 
@@ -240,6 +241,8 @@ class _Work:
         if inexact:
             found = cheapest([*found, *self.fitted(other_laws(found, base, everything), "trying other laws of the best")])
         asked = from_other_starts(found, everything, self._elsewhere, near=not inexact)
+        if asked and inexact and self.team.deadline.passed("laws of the best cause begun elsewhere"):
+            return found
         self._elsewhere.update((suspect.label, suspect.law) for suspect, _ in asked)
         begun = sorted(self.fitted(asked, "beginning the best elsewhere"), key=lambda item: item.fitted.cost)
         near = [item for item in begun if not beyond(item.fitted, found[0].fitted)][: self.how.serious]

@@ -78,11 +78,14 @@ def second_cause(
     samples = int(np.count_nonzero(coarse.fit))
     if first is None or not wants_second(null, first, samples):
         return None, (), ()
+    if team.deadline.passed("a second cause"):
+        return None, (), ()
     rivals = {item.suspect.label: item for item in (*single.labels[1 : JOINED + 1], *there[:1])}
     together = joined(team, coarse, first, tuple(rivals.values()))
     pair = None
     much = left(first.fitted) > enough(null, LEFT)
-    if not any(left(item.fitted) < (enough(null, LEFT) if much else slight(null, samples)) for item in together):
+    near = any(left(item.fitted) < (enough(null, LEFT) if much else slight(null, samples)) for item in together)
+    if not near and not (together and team.deadline.passed("a second cause among everything")):
         depth = SHALLOW if much else GLANCE
         pair = search(team, coarse, first.fitted, groups, tried, depth=depth, report=partial(under, said, "second cause"))
         together = [*pair.found, *together]
@@ -92,17 +95,24 @@ def second_cause(
     if not (much or takes_most(left(first.fitted), left(best.fitted))):
         return pair, (), ()
     said("exchanging causes of the best pair", 0, 1)
-    known = [*together, *swapped(team, coarse, best, first.suspect.label, single.labels[:LABELS])]
+    exchanged = (
+        []
+        if team.deadline.passed("causes of the pair exchanged")
+        else swapped(team, coarse, best, first.suspect.label, single.labels[:LABELS])
+    )
+    known = [*together, *exchanged]
     found = contenders(team, coarse, known, first)
     everything = suspects(null.hypothesis, groups, tried)
     others = alone(team, coarse, found[0], everything)
     gained = first.fitted.cost - found[0].fitted.cost
-    if left(found[0].fitted) > enough(null, LEFT) and gained > TAKEN * max(first.fitted.cost - 0.5 * samples, 0.0):
+    again = left(found[0].fitted) > enough(null, LEFT) and gained > TAKEN * max(first.fitted.cost - 0.5 * samples, 0.0)
+    if again and not team.deadline.passed("the first cause again beside the second"):
         # the first cause was chosen while the second was missing
         for item in others:
             more = search(team, coarse, item.fitted, groups, tried, depth=SHALLOW, report=partial(under, said, "first cause again"))
             found = contenders(team, coarse, [*found, *more.found], first)
-    pairs = contenders(team, coarse, [*found, *moved(team, coarse, found, tried)], first)
+    elsewhere = [] if team.deadline.passed("causes of the pair at other places") else moved(team, coarse, found, tried)
+    pairs = contenders(team, coarse, [*found, *elsewhere], first)
     if pairs[0].suspect.label not in {item.suspect.label for item in others}:
         others += alone(team, coarse, pairs[0], everything)
     return pair, pairs, tuple(others)

@@ -17,6 +17,7 @@ from types import TracebackType
 from typing import Any, Self, TypeVar
 
 from hdrive_mbs.compiled.threads import allowed
+from hdrive_mbs.diagnosis.deadline import Deadline
 from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.later import Later
 from hdrive_mbs.diagnosis.packing import packed
@@ -37,13 +38,14 @@ class Team:
     with Team(2) as team: answers = team.map(function, shared, items)
 
     workers : processes;  journal : where finished work is kept, if it is to be
+    deadline : until when those who give it work look for more; never if not given
     lost : what became of processes that died; another one takes over their item, once
     """
 
-    def __init__(self, workers: int, journal: Journal | None = None) -> None:
+    def __init__(self, workers: int, journal: Journal | None = None, deadline: Deadline | None = None) -> None:
         if workers < 1:
             raise ParameterError(f"workers = {workers}: must be at least 1.")
-        self.workers, self.journal = workers, journal
+        self.workers, self.journal, self.deadline = workers, journal, deadline or Deadline()
         self._running: list[Worker] = []
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._number = 0

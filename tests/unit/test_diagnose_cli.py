@@ -128,7 +128,9 @@ def refused(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
 
 def test_report_is_printed_and_everything_is_written(asked: list[dict[str, Any]], tmp_path: Path) -> None:
     scene, file, out = written(tmp_path, BENCH), record(tmp_path, "a.csv"), tmp_path / "out"
-    done = invoke(scene, "--records", file, "--out", str(out), "--json", str(tmp_path / "d.json"), "--workers", "2")
+    done = invoke(
+        scene, "--records", file, "--out", str(out), "--json", str(tmp_path / "d.json"), "--workers", "2", "--search-seconds", "90"
+    )
     assert done.exit_code == 0
     answer = SAMPLES["without_pictures"]()
     expected = report_text(answer)
@@ -142,6 +144,7 @@ def test_report_is_printed_and_everything_is_written(asked: list[dict[str, Any]]
     assert {item.name for item in out.iterdir()} == names  # and no work left
     assert isinstance(asked[0]["bench"], Bench)
     assert asked[0]["workers"] == 2
+    assert asked[0]["search_seconds"] == 90.0
     assert asked[0]["candidates"] is None
 
 
