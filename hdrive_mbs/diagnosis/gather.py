@@ -22,7 +22,7 @@ from hdrive_mbs.diagnosis.search import Search, fit_nominal, search
 from hdrive_mbs.diagnosis.second_cause import LEFT, second_cause, wants_second
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.stages import Report, under
-from hdrive_mbs.diagnosis.tasks import Found, proven, scored
+from hdrive_mbs.diagnosis.tasks import Found, cheapest, proven, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import TIED, left, takes_most
@@ -85,6 +85,12 @@ def _with(search_: Search, more: Sequence[Found]) -> Search:
     return replace(search_, found=tuple(found))
 
 
+def _of_both(search_: Search, before: Sequence[Found]) -> Search:
+    """With what another search had found, each law at a place at its best."""
+    found = [scored(item, search_.base) for item in cheapest([*search_.found, *before])]
+    return replace(search_, found=tuple(sorted(found, key=lambda item: -item.log_odds))) if before else search_
+
+
 def _placed(fine: Simulator, factors: Sequence[Factor]) -> Located:
     """Where the gap of a rotor line lies, which is looked for from the data sheet.
 
@@ -138,19 +144,23 @@ def _first(
 ) -> tuple[Simulator, Simulator, Fitted, Search]:
     """The nominal model and a search for one cause, with the records as they know what shows in which of them.
 
-    The model is fitted again where the search shows that it had ended in a hollow, and all is looked for again where little is left then.
+    The model is fitted again where the search shows that it had ended in a hollow.  All is looked for again where most of what was left is
+    taken by that, or more than by the best cause, and what was found before stays a candidate.
     """
     [null] = team.map(fit_nominal, coarse, [tuple(factors)], partial(said, "fitting the nominal model"))
+    found: list[Found] = []
     while True:
         unseen = _unseen(coarse, null)
         coarse, fine = coarse.knowing(unseen), fine.knowing(unseen)
-        single = search(team, coarse, null, groups, tried, report=said)
+        single = _of_both(search(team, coarse, null, groups, tried, report=said), found)
+        found = list(single.found)
         before, better = null, nominal_again(team, coarse, null, single.found)
         if better is None:
             return coarse, fine, null, single
         null = better
-        if not takes_most(left(before), left(null)):
-            return coarse, fine, null, _with(replace(single, base=null, found=()), single.found)
+        far = takes_most(left(before), left(null)) or null.cost < min(item.fitted.cost for item in found)
+        if not far or team.deadline.passed("everything from the nominal model as fitted again"):
+            return coarse, fine, null, _of_both(Search(null, (), single.looks), found)
 
 
 def gather(

@@ -49,7 +49,8 @@ class Journal:
     def identity(self, shared: Any) -> str:
         """What tasks share: of records and their models what makes them differ within one diagnosis."""
         if isinstance(shared, Simulator):
-            return digest("simulator", shared.step, shared.every)
+            unseen = sorted((name, tuple(sorted(trials))) for name, trials in shared.unseen.items())
+            return digest("simulator", shared.step, shared.every, unseen)
         if isinstance(shared, Screen):
             return digest("screen", self.identity(shared.simulator), shared.null.hypothesis, shared.null.z)
         if isinstance(shared, tuple):

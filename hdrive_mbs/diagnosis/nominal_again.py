@@ -28,7 +28,7 @@ SHARE = 0.1
 
 
 def nominal_again(team: Team, simulator: Simulator, null: Fitted, found: Sequence[Found]) -> Fitted | None:
-    """The model that causes were added to, refitted from the best of their parameters; None where that gains nothing.
+    """The model that causes were added to, refitted from the best of their parameters; None where that gains next to nothing.
 
     The model is no worse with those parameters than with its own only where its own fit had ended in a hollow.
 

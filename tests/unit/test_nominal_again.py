@@ -10,6 +10,7 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis import gather
+from hdrive_mbs.diagnosis.deadline import Deadline
 from hdrive_mbs.diagnosis.diagnose import diagnose, factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
@@ -78,24 +79,38 @@ def test_all_is_looked_for_again_from_where_the_nominal_model_comes_to_then(monk
     assert abs(found.gap.refit.value - 1.0) < 0.02
 
 
-def test_a_model_that_gains_little_so_is_what_causes_are_held_against_without_a_new_search(
-    simulator: Simulator, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("takes", "seconds", "searches"),
+    [
+        (40.0, None, 1),  # a little of what was left
+        (150.0, None, 2),  # more than the best cause
+        (150.0, 1e-9, 1),  # likewise, when there is no time for it
+    ],
+)
+def test_causes_are_held_against_the_better_model_and_looked_for_again_where_it_beats_them(
+    simulator: Simulator, monkeypatch: pytest.MonkeyPatch, takes: float, seconds: float | None, searches: int
 ) -> None:
     null = there(simulator, NOMINAL, HOLLOW)
-    better = dataclasses.replace(null, cost=null.cost - 40.0, chi_fit=0.99 * null.chi_fit)
-    suspect = Suspect(("quadratic_drag", "motor"), "QuadraticDrag", (NOMINAL,), (NOMINAL,))
-    found = Found(suspect, dataclasses.replace(null, cost=null.cost - 100.0), log_odds=100.0)
+    better = dataclasses.replace(null, cost=null.cost - takes, chi_fit=0.99 * null.chi_fit)
     asked: list[Fitted] = []
+
+    def cause(at: str, below: float) -> Found:
+        suspect = Suspect(("quadratic_drag", at), "QuadraticDrag", (NOMINAL,), (NOMINAL,))
+        return Found(suspect, dataclasses.replace(null, cost=null.cost - below), log_odds=below)
 
     def search(team: Team, simulator: Simulator, base: Fitted, *more: Any, **how: Any) -> Search:
         asked.append(base)
-        return Search(base, (found,))
+        return Search(base, (cause("motor", 100.0) if len(asked) == 1 else cause("load", 90.0),))
 
     monkeypatch.setattr(gather, "fit_nominal", lambda simulator, factors: null)
     monkeypatch.setattr(gather, "search", search)
-    monkeypatch.setattr(gather, "nominal_again", lambda *some: better)
-    with Team(1) as team:
+    monkeypatch.setattr(gather, "nominal_again", lambda *some: better if asked[-1] is null else None)
+    with Team(1, deadline=Deadline(seconds)) as team:
         _, _, used, single = gather._first(team, simulator, simulator, NOMINAL.factors, {}, [], lambda *said: None)
-    assert asked == [null]
+        left_out = team.deadline.left_out
+    assert asked == [null, better][:searches]
     assert used is single.base is better
-    assert single.found[0].log_odds == pytest.approx(100.0 - 40.0)
+    places = [item.suspect.label[1] for item in single.found]
+    assert places == ["motor", "load"][:searches]  # what the first search found stays
+    assert single.found[0].log_odds == pytest.approx(100.0 - takes)
+    assert left_out == ([] if seconds is None else ["everything from the nominal model as fitted again"])
