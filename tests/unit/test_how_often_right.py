@@ -34,6 +34,24 @@ def test_a_row_of_the_documentation_holds_what_the_set_gave(bench: str, which: s
     assert [place, nulls, unknown] == [share(found[name]) for name in ("place right", "nulls kept", "unknown caught")]
 
 
+@pytest.mark.parametrize("bench", ["drive", "rotor"])
+def test_the_last_four_sets_together_are_the_sums_of_theirs(bench: str) -> None:
+    text = (ROOT / "docs" / "diagnosis.md").read_text("utf-8")
+    [told] = re.findall(rf"^The last four sets of the {bench} bench together: (.+)\.$", text, re.MULTILINE)
+    numbers = sorted(int(path.parent.name.partition("_")[2]) for path in OWN.glob(f"{bench}_[0-9]*/results.json"))[-4:]
+    methods = [json.loads((OWN / f"{bench}_{number}" / "results.json").read_text("utf-8"))["methods"]["diagnosis"] for number in numbers]
+
+    def together(name: str) -> tuple[int, int]:
+        return sum(found[name]["right"] for found in methods), sum(found[name]["of"] for found in methods)
+
+    def with_interval(name: str) -> str:
+        low, high = interval(*together(name))
+        return "{} of {} ({:.2f} to {:.2f})".format(*together(name), low, high)
+
+    pairs = "{} of {}".format(*together("both of two"))
+    assert told == f"cause right in {with_interval('effect right')}, place right in {with_interval('place right')}, both of two in {pairs}"
+
+
 def test_the_documentation_leaves_out_no_set_since_the_first_it_names() -> None:
     """Of each bench the last ones without a gap: none that went badly is passed over."""
     for bench in ("drive", "rotor"):
