@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.compiled.threads import allowed
 from hdrive_mbs.diagnosis.alternatives import fits_of, records_to_take
 from hdrive_mbs.diagnosis.assumed_bench import assumed_bench
 from hdrive_mbs.diagnosis.bench import Bench
@@ -124,7 +125,8 @@ def diagnose(
         evidence = gather(coarse, fine, factors, known.groups, tried, team, report)
     if watch is not None:
         watch(evidence)
-    found = answer(known, chosen, evidence, started=started, pictures=pictures)
+    with allowed(lambda: workers or 1):  # its processes have ended
+        found = answer(known, chosen, evidence, started=started, pictures=pictures)
     notes = (
         *left_out(tried, evidence.single, step),
         *ringing_words(trials),

@@ -209,6 +209,16 @@ def test_a_group_counts_by_its_worst_pair() -> None:
     assert by_pair[found.first, found.second] == min(by_pair.values())
 
 
+def test_what_shows_the_same_as_fitted_is_named_without_any_jacobian(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Friction at stations of a stiff shaft: of four places that tie, six pairs both ways round would take most of a minute."""
+    fits = {COMPLIANCE: as_given(soft(4e-3)), FRICTION: as_given(rubbing(5e-2)), ("drag", "hub"): as_given(dragging(1e-3))}
+    fits |= {DRAG: as_given(dragging(1e-3 * (1.0 + 1e-9)))}
+    monkeypatch.setattr("hdrive_mbs.diagnosis.experiment.detectability.jacobian", lambda *given: pytest.fail("a Jacobian was made"))
+    found = separation(bench(), fits, LOAD_STEP)
+    assert {found.first, found.second} == {("drag", "hub"), DRAG}
+    assert 0.0 < found.detectability < 1e-6
+
+
 def test_a_linear_model_comes_as_close_as_any_optimiser_brings_it() -> None:
     rng = np.random.default_rng(2)
     difference, columns = rng.normal(size=50), rng.normal(size=(50, 4)) * (1.0, 1e3, 1e-3, 0.0)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
+import math
 from collections.abc import Callable, Mapping, Sequence
 
 from hdrive_mbs.diagnosis.bench import Bench
-from hdrive_mbs.diagnosis.experiment.detectability import Predictions
+from hdrive_mbs.diagnosis.experiment.detectability import ENOUGH, Predictions
 from hdrive_mbs.diagnosis.experiment.limits import Limits, limits_of
 from hdrive_mbs.diagnosis.experiment.menu import standard_menu
 from hdrive_mbs.diagnosis.experiment.plan import Plan
@@ -67,11 +67,17 @@ def next_records(
 def separation(
     bench: Bench, fits: Mapping[Label, Fitted], plan: Plan, *, step: float | None = None, every: int = 1, alone: bool = False
 ) -> Separation:
-    """The pair that a plan separates least, and how well.  Raises AnalysisError where a fit cannot be simulated through it."""
+    """The pair that a plan separates least, and how well.  Of pairs that it does not separate at all the one that differs least as fitted.
+
+    Raises AnalysisError where a fit cannot be simulated through it.
+    """
     labels = tuple(fits)
     predictions = Predictions(bench.planned(plan), tuple(fits.values()), step=step or 0.5 * plan.every, every=every)
-    pairs = itertools.combinations(range(len(labels)), 2)
-    least, first, second = min((predictions.apart(i, j, alone=alone), i, j) for i, j in pairs)
+    least, first, second = math.inf, 0, 1
+    for i, j in predictions.nearest_first():
+        least, first, second = min((least, first, second), (predictions.apart(i, j, alone=alone), i, j))
+        if least < ENOUGH:
+            break
     return Separation(record=plan.name, first=labels[first], second=labels[second], detectability=least)
 
 

@@ -16,6 +16,7 @@ follow it in a new record that speaks alone; then only the old records, which th
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -89,12 +90,14 @@ class Predictions:
         return self._columns[number]
 
     def between(self, first: int, second: int, *, alone: bool = False) -> float:
-        """D, if the first is right."""
+        """D, if the first is right; of models that show the same as they are fitted what they differ by, which D is not above."""
+        least = self.differ_by(first, second)
+        if least < ENOUGH:
+            return least
         fitted, simulator = self._fits[second], self._simulator
         held, (low, high) = holding(fitted, alone=alone), allowed(fitted)
         moved, residuals, columns = np.zeros(len(fitted.z)), self._residuals[second], self.columns(second)
         difference = residuals - self._residuals[first]
-        least = float(difference @ difference)
         for k in range(self._rounds):
             if k > 0:
                 columns = jacobian(simulator, fitted.hypothesis, fitted.z + moved, residuals)
@@ -111,6 +114,15 @@ class Predictions:
             if least - promised < ENOUGH + KEPT * least or before - least < ENOUGH:
                 break
         return least
+
+    def differ_by(self, first: int, second: int) -> float:
+        """|W (S_1 - S_2)|^2 of both as they are fitted: D is not above it."""
+        difference = self._residuals[second] - self._residuals[first]
+        return float(difference @ difference)
+
+    def nearest_first(self) -> list[tuple[int, int]]:
+        """All pairs of models, first those that differ least as they are fitted."""
+        return sorted(itertools.combinations(range(len(self._fits)), 2), key=lambda pair: self.differ_by(*pair))
 
     def apart(self, first: int, second: int, *, alone: bool = False) -> float:
         """The smaller D of both ways round: whichever of the two is right, the other one is ruled out by it."""
