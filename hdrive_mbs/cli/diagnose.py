@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json as json_text
 import os
@@ -256,6 +257,8 @@ def _begin(work: Path, job: Mapping[str, Any], resume: bool) -> Path:
 
 
 def _leave(work: Path) -> None:
-    """Take the folder away where no answer of a fit is in it."""
+    """Take the folder away where no answer of a fit is in it, and the one it is in where nothing else is."""
     if not any(item.is_file() and item.name not in (JOB, INPUTS) for item in work.rglob("*")):
         shutil.rmtree(work)
+        with contextlib.suppress(OSError):  # it holds something
+            work.parent.rmdir()

@@ -346,6 +346,11 @@ def test_an_error_of_the_search_is_one_line_and_can_be_mended(
     words = (written(tmp_path, BENCH), "--records", record(tmp_path, "a.csv"), "--out", str(tmp_path / "out"))
     for _ in range(2):  # the second time as the first: what failed at once is nothing to go on with
         assert "error: Record 'a' has 80 samples" in refused(capsys, monkeypatch, *words)
+        assert not (tmp_path / "out").exists()
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "mine.txt").write_text("kept")
+    refused(capsys, monkeypatch, *words)
+    assert [item.name for item in (tmp_path / "out").iterdir()] == ["mine.txt"]
 
 
 def test_an_interrupted_diagnosis_is_kept_and_gone_on_with(
