@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -15,7 +15,7 @@ from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.located import Located, located
 from hdrive_mbs.diagnosis.search import HOPS
 from hdrive_mbs.diagnosis.simulator import Simulator
-from hdrive_mbs.diagnosis.tasks import FINE, NEAR, Task, run_task
+from hdrive_mbs.diagnosis.tasks import FINE, NEAR, Task, rivalling, run_task
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.errors import AnalysisError
 
@@ -25,9 +25,6 @@ LAST, LONG = 4, 20
 """Steps that these fits may take, and those of the best."""
 EXACT = 1e-6
 """Relative change of the cost that ends them where little is left."""
-RIVAL = 25.0
-"""Log-likelihood behind the best within which another label is fitted as far as it: what so little tells apart has to be fitted alike."""
-
 CANNOT_RUN = "The nominal scene cannot be simulated through all of the records; look at its start values and inputs."
 
 
@@ -49,21 +46,32 @@ def as_given(fine: Simulator, nominal: Hypothesis) -> Fitted | None:
 def on_all_samples(
     team: Team, fine: Simulator, null: Fitted, found: Sequence[Fitted], place: Located | None, said: Callable[[int, int], None]
 ) -> Last:
-    """Fit on from where a search on fewer samples came to, side by side.
+    """Fit on from where a search on fewer samples came to, side by side: the best first, and the others as far as they may catch up.
 
     null : the nominal model, refitted;  found : with one cause or several;  place : where the gap lies, if that is known already
 
     Raises AnalysisError where the nominal model cannot be simulated.
     """
-    tasks = [_of_nominal(null), *_of_found(found, null.chi_fit < NEAR)]
-    work: list[Work] = [partial(as_given, nominal=null.hypothesis), *(partial(run_task, task=task) for task in tasks)]
-    nominal, refitted, *others = team.map(_done, fine, work, said)
+    tasks = _of_found(found, null.chi_fit < NEAR)
+    order = sorted(range(len(found)), key=lambda k: found[k].cost)
+    best, rest = order[:1], order[1:]
+    whole = 2 + len(found)
+    work: list[Work] = [
+        partial(as_given, nominal=null.hypothesis),
+        partial(run_task, task=_of_nominal(null)),
+        *(partial(run_task, task=tasks[k]) for k in best),
+    ]
+    nominal, refitted, *leading = team.map(_done, fine, work, lambda done, total: said(done, whole))
     if nominal is None or refitted is None:
         raise AnalysisError(CANNOT_RUN)
+    others = dict(zip(best, leading, strict=True))
+    beat = next((rivalling(item) for item in leading if item is not None), None)
+    work = [partial(run_task, task=replace(tasks[k], beat=beat)) for k in rest]
+    others |= dict(zip(rest, team.map(_done, fine, work, lambda done, total: said(2 + len(best) + done, whole)), strict=True))
     if place is None:
         team.dismiss()  # it is the last that they do, and a localisation needs the memory
         place = located(fine, refitted)
-    return Last(nominal, refitted, tuple(others), place)
+    return Last(nominal, refitted, tuple(others[k] for k in range(len(found))), place)
 
 
 def _done(fine: Simulator, work: Work) -> Any:
@@ -86,7 +94,7 @@ def _of_found(found: Sequence[Fitted], near: bool) -> list[Task]:
     leader = min(found, key=lambda item: item.cost, default=None)
     tasks = []
     for item in found:
-        rivals = leader is not None and item.cost < leader.cost + RIVAL
+        rivals = leader is not None and item.cost < rivalling(leader)
         elsewhere = leader is not None and not item.converged and item.chi_fit < NEAR and _families(item) == _families(leader)
         steps = LONG if rivals or elsewhere or near else 1 if leader is not None and beyond(item, leader) else LAST
         sharp = EXACT if item.chi_fit < NEAR else FINE

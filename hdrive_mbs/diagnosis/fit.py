@@ -35,6 +35,8 @@ DAMPED = ((1.0, 1e-2), (1.0, 0.3), (1.0, 5.0), (0.5, 3e-2), (0.0, 0.1))
 AS_PROMISED, WELL_PROMISED = 0.6, (0.8, 1.3)
 """Shares of what the whole undamped step promises: from the first on it is taken without trying others, and between the
 other two the Jacobian was good enough to be mended by what the step showed, in place of new differences."""
+LATELY = 2
+"""Last steps by which a fit is judged that has to come down to a cost."""
 TINY = 1e-300
 
 
@@ -82,11 +84,13 @@ def fit(
     share: float = 1e-4,
     stop: Callable[[], bool] | None = None,
     begin: FloatArray | None = None,
+    beat: float | None = None,
 ) -> Fitted:
     """The most probable parameters, from a start.
 
     steps : most Gauss-Newton steps;  enough, share : a step that lowers the cost by less than enough + share times the cost ends the search
     begin : residuals at the start, if they are there already
+    beat : a cost that it has to come down to; given up where its last steps, kept up through all that are left, do not lead there
 
     Raises AnalysisError where the start cannot be simulated.
     """
@@ -155,7 +159,7 @@ def fit(
                 converged = True
                 break
             columns = None
-        if stop is not None and stop():
+        if (stop is not None and stop()) or falls_short(history, beat, steps - done):
             break
     return Fitted(
         hypothesis=hypothesis,
@@ -171,6 +175,16 @@ def fit(
         misfit_held=simulator.held_blocks.cost(residuals[simulator.held_out]),
         history=tuple(history),
     )
+
+
+def falls_short(costs: Sequence[float], beat: float | None, left: int) -> bool:
+    """Whether a fit will not come down to a cost although each step that is left gains what the last LATELY ones did together.
+
+    costs : at the start and after each step that gained something;  left : steps
+    """
+    if beat is None or len(costs) <= LATELY:
+        return False
+    return costs[-1] - left * (costs[-1 - LATELY] - costs[-1]) > beat
 
 
 def secant(columns: FloatArray, change: FloatArray, move: FloatArray, scale: FloatArray) -> FloatArray:

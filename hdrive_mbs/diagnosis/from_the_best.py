@@ -10,7 +10,7 @@ from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.ground import as_known
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis, searched_fields
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect
-from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, Found, Task, further
+from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, Found, Task, further, rivalling
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
 
@@ -52,7 +52,11 @@ def unfinished(found: Sequence[Found]) -> list[tuple[Suspect, Task]]:
     for item in found:
         first.setdefault(item.suspect.label, item)
     best = list(first.values())[:RIVALS]
-    return [(item.suspect, further(item.fitted)) for item in best if not item.fitted.converged and not beyond(item.fitted, best[0].fitted)]
+    return [
+        (item.suspect, further(item.fitted, beat=None if item is best[0] else rivalling(best[0].fitted)))
+        for item in best
+        if not item.fitted.converged and not beyond(item.fitted, best[0].fitted)
+    ]
 
 
 def other_laws(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:
@@ -96,7 +100,7 @@ def elsewhere(best: Found | None, base: Fitted, everything: Sequence[Suspect]) -
         old = suspect.all[0]
         added = (*old.added[:-1], Added(values, old.added[-1].at, old.added[-1].name))
         task = _from(fitted, base, Hypothesis(old.factors, added, old.loose))
-        tasks.append((suspect, replace(task, leading=fitted.chi_fit)))
+        tasks.append((suspect, replace(task, leading=fitted.chi_fit, beat=rivalling(fitted))))
     return tasks
 
 

@@ -24,6 +24,7 @@ from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.stages import Report, under
 from hdrive_mbs.diagnosis.tasks import Found, cheapest, proven, scored
 from hdrive_mbs.diagnosis.team import Team
+from hdrive_mbs.diagnosis.together import Together
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import TIED, left, takes_most
 from hdrive_mbs.errors import AnalysisError
@@ -141,8 +142,8 @@ def _first(
     groups: Mapping[str, Sequence[str]],
     tried: Sequence[Candidate],
     said: Report,
-) -> tuple[Simulator, Simulator, Fitted, Search]:
-    """The nominal model and a search for one cause, with the records as they know what shows in which of them.
+) -> tuple[Simulator, Simulator, Fitted, Search, Together]:
+    """The nominal model and a search for one cause, with the records as they know what shows in which of them, and what pairs explain all.
 
     The model is fitted again where the search shows that it had ended in a hollow.  All is looked for again where most of what was left is
     taken by that, or more than by the best cause, and what was found before stays a candidate.
@@ -152,15 +153,16 @@ def _first(
     while True:
         unseen = _unseen(coarse, null)
         coarse, fine = coarse.knowing(unseen), fine.knowing(unseen)
-        single = _of_both(search(team, coarse, null, groups, tried, report=said), found)
+        together = Together(team, coarse, null)
+        single = _of_both(search(team, coarse, null, groups, tried, explained=together.explain, report=said), found)
         found = list(single.found)
         before, better = null, nominal_again(team, coarse, null, single.found)
         if better is None:
-            return coarse, fine, null, single
+            return coarse, fine, null, single, together
         null = better
         far = takes_most(left(before), left(null)) or null.cost < min(item.fitted.cost for item in found)
         if not far or team.deadline.passed("everything from the nominal model as fitted again"):
-            return coarse, fine, null, _of_both(Search(null, (), single.looks), found)
+            return coarse, fine, null, _of_both(Search(null, (), single.looks), found), together
 
 
 def gather(
@@ -180,11 +182,12 @@ def gather(
     """
     said = report or (lambda stage, done, total: None)
     asked = _ask_where(team, fine, factors)
-    coarse, fine, null, single = _first(team, coarse, fine, factors, groups, tried, said)
+    coarse, fine, null, single, together = _first(team, coarse, fine, factors, groups, tried, said)
     place = None if asked is None else _told_where(team, asked, said)
-    there = _there(team, coarse, null, single, place, tried, said)
+    known = together.with_first(single.found[0] if single.found else None)
+    there = () if known else _there(team, coarse, null, single, place, tried, said)
     single = _with(single, there)
-    pair, double, others = second_cause(team, coarse, null, groups, tried, single, there, said)
+    pair, double, others = second_cause(team, coarse, null, groups, tried, single, there, known, said)
     single = _with(single, others)
     if double and not wants_second(null, single.found[0], int(np.count_nonzero(coarse.fit))):
         double = ()  # its second cause stood beside a wrong first one: had it been found at once, no other would have been looked for

@@ -9,7 +9,7 @@ from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect, renamed
-from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, FIRST, Found, Task, further, is_hopeless, run_task, those_that_ran
+from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, FIRST, Found, Task, further, is_hopeless, rivalling, run_task, those_that_ran
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
@@ -111,7 +111,7 @@ def moved(team: Team, simulator: Simulator, pairs: Sequence[Found], tried: Seque
     open_ = [item for item in begun.values() if not (item.fitted.converged or is_hopeless(item.fitted.chi_fit, best.fitted.chi_fit))]
     going = open_[:GOING]
     found = [item for item in begun.values() if item not in going]
-    fits = team.map(run_task, simulator, [further(item.fitted, MOVED - FIRST) for item in going])
+    fits = team.map(run_task, simulator, [further(item.fitted, MOVED - FIRST, beat=rivalling(best.fitted)) for item in going])
     return [*found, *those_that_ran([item.suspect for item in going], fits)]
 
 

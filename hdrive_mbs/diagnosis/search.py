@@ -24,7 +24,7 @@ from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.stages import Report
 from hdrive_mbs.diagnosis.suspects import Label, Suspect, simplest, suspects
-from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, NEAR, Found, Task, cheapest, further, run_task, scored, those_that_ran
+from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, NEAR, Found, Task, cheapest, further, rivalling, run_task, scored, those_that_ran
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import ODDS, left, stands
@@ -108,6 +108,7 @@ def search(
     *,
     depth: Depth | None = None,
     begin: Begin = Periods,
+    explained: Callable[[Search], bool] | None = None,
     report: Report | None = None,
 ) -> Search:
     """Look at everything that may be missing from a fitted model, and fit the best together with its parameters.
@@ -124,6 +125,7 @@ def search(
     A shallow search begins with held parameters where those of the base are bent.
 
     begin : of the simulator and a fitted model, what says where laws with a period begin
+    explained : asked where the best leaves something, before all is done again: whether what was found so far explains all in another way
     """
     how = depth or Depth()
     work = _Work(team, simulator, report or (lambda stage, done, total: None), how, begin)
@@ -136,16 +138,21 @@ def search(
     found = work.other_ways(found, base, everything)
     looks = {f"{suspect.law} at {suspect.label[1]}": cost for suspect, cost in first}
     inexact = how.laws > 1 and how.again and base.chi_fit > FAR and not any(item.fitted.typical < enough(base, ENOUGH) for item in found)
-    if inexact and not team.deadline.passed("everything from parameters held near the data sheet"):
+    done = inexact and explained is not None and explained(_ranked(found, base, looks))
+    if inexact and not done and not team.deadline.passed("everything from parameters held near the data sheet"):
         likely = {suspect.label for suspect, _ in first[:SECOND_LOOKS]}
         more, _ = work.from_ground(held(simulator, base), base, [item for item in everything if item.label in likely or item.is_periodic])
         found = work.other_ways(cheapest([*found, *more]), base, everything)
-    if how.laws > 1 or (found and found[0].fitted.chi_fit > FAR):
+    if not done and (how.laws > 1 or (found and found[0].fitted.chi_fit > FAR)):
         moved = elsewhere(found[0] if found else None, base, everything) + (restarts(found, FAR) if how.laws > 1 and how.again else [])
         found = cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
         found = cheapest([*found, *work.fitted(unfinished(found), "fitting the best")])
     if how.laws > 1 and base.chi_fit < NEAR:
         found = cheapest([*found, *work.fitted(bent(base, everything), "fitting parameters that the nominal model has bent")])
+    return _ranked(found, base, looks)
+
+
+def _ranked(found: Sequence[Found], base: Fitted, looks: Mapping[str, float]) -> Search:
     final = sorted((scored(item, base) for item in found), key=lambda item: -item.log_odds)
     return Search(base=base, found=tuple(final), looks=looks)
 
@@ -222,12 +229,17 @@ class _Work:
             (k < self.how.serious or item.suspect.label == kept[0].suspect.label) and not beyond(item.fitted, kept[0].fitted)
             for k, item in enumerate(kept)
         ]
-        further_ = [further(item.fitted, *((CONVERGED, FINE, 1) if end else (STEPS,))) for item, end in zip(kept, thorough, strict=True)]
+        rival = rivalling(kept[0].fitted) if kept else None
+        further_ = [
+            further(item.fitted, CONVERGED if end else STEPS, hops=int(end), beat=None if item is kept[0] else rival)
+            for item, end in zip(kept, thorough, strict=True)
+        ]
         found = cheapest(self.fitted([(item.suspect, task) for item, task in zip(kept, further_, strict=True)], "fitting the best"))
         if far and not scanning and (not found or found[0].fitted.typical > SEEN):
             found = cheapest([*found, *self.scanned(everything)])
         if found and leaves(found[0].fitted.typical, base, ENOUGH) and not self.team.deadline.passed("laws and places passed over"):
-            found = cheapest([*found, *self._others([*not_begun(found, closer, best), *passed_over(found, first, chosen)])])
+            asked = [*not_begun(found, closer, best), *passed_over(found, first, chosen)]
+            found = cheapest([*found, *self._others(asked, rivalling(found[0].fitted))])
         return found, [(suspect, look.cost) for suspect, look in first]
 
     def other_ways(self, found: list[Found], base: Fitted, everything: Sequence[Suspect]) -> list[Found]:
@@ -246,14 +258,14 @@ class _Work:
         self._elsewhere.update((suspect.label, suspect.law) for suspect, _ in asked)
         begun = sorted(self.fitted(asked, "beginning the best elsewhere"), key=lambda item: item.fitted.cost)
         near = [item for item in begun if not beyond(item.fitted, found[0].fitted)][: self.how.serious]
-        going = [(item.suspect, further(item.fitted, 2 * STEPS)) for item in near]
+        going = [(item.suspect, further(item.fitted, 2 * STEPS, beat=rivalling(found[0].fitted))) for item in near]
         return cheapest([*found, *begun, *self.fitted(going, "fitting on from there")])
 
-    def _others(self, looks: Sequence[tuple[Suspect, Look]]) -> list[Found]:
-        """A few joint steps from looks that had been left aside, and the best of them fitted to the end."""
+    def _others(self, looks: Sequence[tuple[Suspect, Look]], beat: float) -> list[Found]:
+        """A few joint steps from looks that had been left aside, and the best of them fitted to the end if they come down to a cost."""
         tasks = [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE)) for suspect, look in looks]
         brief = cheapest(self.fitted(tasks, "other places of the best"))
-        best = [(item.suspect, further(item.fitted)) for item in brief[: self.how.serious]]
+        best = [(item.suspect, further(item.fitted, beat=beat)) for item in brief[: self.how.serious]]
         return [*brief[len(best) :], *self.fitted(best, "fitting the best")]
 
     def _begun(self, everything: Sequence[Suspect], model: Fitted) -> list[Suspect]:

@@ -68,11 +68,14 @@ def second_cause(
     tried: Sequence[Candidate],
     single: Search,
     there: Sequence[Found],
+    known: Sequence[Found],
     said: Report,
 ) -> tuple[Search | None, tuple[Found, ...], tuple[Found, ...]]:
     """Where one cause leaves something: a search for a second one, pairs that may be the best, and second causes without the first.
 
     Causes that are known are put together first, and a second one is searched for where none of these pairs explains the rest.
+
+    there : single causes at the place of the gap;  known : pairs with the best single cause, if they have been put together already
     """
     first = single.found[0] if single.found else None
     samples = int(np.count_nonzero(coarse.fit))
@@ -81,7 +84,7 @@ def second_cause(
     if team.deadline.passed("a second cause"):
         return None, (), ()
     rivals = {item.suspect.label: item for item in (*single.labels[1 : JOINED + 1], *there[:1])}
-    together = joined(team, coarse, first, tuple(rivals.values()))
+    together = list(known) or joined(team, coarse, first, tuple(rivals.values()))
     pair = None
     much = left(first.fitted) > enough(null, LEFT)
     near = any(left(item.fitted) < (enough(null, LEFT) if much else slight(null, samples)) for item in together)

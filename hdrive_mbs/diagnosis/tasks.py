@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +27,8 @@ FINE, CONVERGED = 1e-4, 25
 NEAR = 3.0
 """Mean square up to which hops out of hollows help, and up to which it is worth a fit of the nominal model as sharp as that of the
 causes: farther away they lead nowhere."""
+RIVAL = 25.0
+"""Log-likelihood behind the best within which another label is fitted as far as it: what so little tells apart has to be fitted alike."""
 HOPELESS = 10.0
 """Times the mean square of a law that is near, above which others are not fitted to the end."""
 
@@ -44,6 +47,7 @@ class Task:
     """A fit to do: where it begins, how far it may go, and hops at its end.  ``done`` is set where it is fitted already.
 
     leading : mean square of what it is tried against, if anything: given up after the first steps where it is hopeless beside that
+    beat : cost of what it is tried against, if anything: given up where its steps do not lead there
     """
 
     hypothesis: Hypothesis
@@ -54,18 +58,26 @@ class Task:
     done: Fitted | None = None
     hops: int = 0
     leading: float | None = None
+    beat: float | None = None
 
 
 def run_task(simulator: Simulator, task: Task) -> Fitted | None:
     """Do it; None where it cannot be run from where it begins."""
     first = task.steps if task.leading is None else min(FIRST, task.steps)
+    on = partial(fit, simulator, task.hypothesis, share=task.share, beat=task.beat)
     try:
-        fitted = task.done or fit(simulator, task.hypothesis, task.z, steps=first, share=task.share, begin=task.residuals)
+        fitted = task.done or on(task.z, steps=first, begin=task.residuals)
         if task.leading is not None and not fitted.converged and not is_hopeless(fitted.chi_fit, task.leading):
-            fitted = fit(simulator, task.hypothesis, fitted.z, steps=task.steps - first, share=task.share, begin=fitted.residuals)
+            fitted = on(fitted.z, steps=task.steps - first, begin=fitted.residuals)
     except AnalysisError:
         return None
-    return settled(simulator, fitted, task.hops) if task.hops and fitted.chi_fit < NEAR else fitted
+    hops = task.hops if fitted.chi_fit < NEAR and (task.beat is None or fitted.cost <= task.beat) else 0
+    return settled(simulator, fitted, hops) if hops else fitted
+
+
+def rivalling(best: Fitted) -> float:
+    """The cost that a rival of the best fit has to come down to."""
+    return best.cost + RIVAL
 
 
 def is_hopeless(left: float, leading: float) -> bool:
@@ -73,9 +85,9 @@ def is_hopeless(left: float, leading: float) -> bool:
     return leading < NEAR and left > HOPELESS * leading
 
 
-def further(fitted: Fitted, steps: int = CONVERGED, share: float = FINE, hops: int = 0) -> Task:
+def further(fitted: Fitted, steps: int = CONVERGED, share: float = FINE, hops: int = 0, beat: float | None = None) -> Task:
     """To fit on from where a fit stands."""
-    return Task(fitted.hypothesis, fitted.z, fitted.residuals, steps, share, fitted if fitted.converged else None, hops)
+    return Task(fitted.hypothesis, fitted.z, fitted.residuals, steps, share, fitted if fitted.converged else None, hops, beat=beat)
 
 
 def scored(found: Found, base: Fitted) -> Found:

@@ -913,7 +913,7 @@ def test_the_first_of_two_causes_is_looked_for_again_beside_the_second_where_bot
         monkeypatch.setattr(f"hdrive_mbs.diagnosis.second_cause.{name}", made)
     single = Search(null, (found(2.0, 6000.0, "load"),))
     with Team(1) as team:
-        _, best, others = second_cause.second_cause(team, simulator, null, {}, [], single, (), lambda *said: None)
+        _, best, others = second_cause.second_cause(team, simulator, null, {}, [], single, (), (), lambda *said: None)
     assert asked == (["load", "motor"] if again else ["load"])
     assert best == (pairs["motor" if again else "load"],)
     assert ends == [best]

@@ -94,7 +94,7 @@ def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_anything
     named("contenders", (two,))
     with Team(1) as team:
         search, pairs, _ = second_cause.second_cause(
-            team, simulator, null, {}, [], Search(null, (one,)), (), lambda stage, done, total: None
+            team, simulator, null, {}, [], Search(null, (one,)), (), (), lambda stage, done, total: None
         )
     assert ("search" in asked) is (exchanged is not None)
     assert ("swapped" in asked) is (exchanged is True)
