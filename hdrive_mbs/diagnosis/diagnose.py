@@ -7,6 +7,7 @@ import math
 import platform
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from importlib import metadata
 from pathlib import Path
 
@@ -41,7 +42,7 @@ from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import NONE, UNKNOWN, Claim, judge, left
-from hdrive_mbs.diagnosis.verify import verified
+from hdrive_mbs.diagnosis.verify import Verified, verified
 from hdrive_mbs.diagnosis.whole_records import split_up
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
@@ -123,10 +124,12 @@ def diagnose(
         journal = Journal(folder, inputs)
     with Team(workers or 1, journal, deadline) as team:
         evidence = gather(coarse, fine, factors, known.groups, tried, team, report)
+        claim, best = _concluded(evidence)
+        checked = _on_the_engine(team, evidence, best, report)
     if watch is not None:
         watch(evidence)
     with allowed(lambda: workers or 1):  # its processes have ended
-        found = answer(known, chosen, evidence, started=started, pictures=pictures)
+        found = answer(known, chosen, evidence, claim, best, checked, started=started, pictures=pictures)
     notes = (
         *left_out(tried, evidence.single, step),
         *ringing_words(trials),
@@ -176,10 +179,40 @@ def factors_of(bench: Bench) -> tuple[Factor, ...]:
     return tuple(found)
 
 
-def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, started: float, pictures: bool) -> Diagnosis:
-    """The answer that the fits of a case give."""
+def _concluded(evidence: Evidence) -> tuple[Claim, Fitted]:
+    """What the fits of a case say, and the fit that stands for it."""
     claim = judge(left(evidence.null), evidence.singles, evidence.pairs)
-    best = evidence.null if claim.fit is None or claim.kind == "unknown" else claim.fit.fitted
+    return claim, evidence.null if claim.fit is None or claim.kind == "unknown" else claim.fit.fitted
+
+
+def _on_the_engine(team: Team, evidence: Evidence, best: Fitted, report: Report | None) -> list[Verified]:
+    """What is answered and what comes next, run on the engine; in processes if they are there still."""
+    said = partial(report or (lambda stage, done, total: None), "verifying on the engine")
+    fits = _winner_and_runner_up(evidence, best)
+    if team.is_at_hand:
+        return team.map(verified, evidence.fine, fits, said)
+    found: list[Verified] = []
+    for number, fitted in enumerate(fits):
+        said(number, len(fits))
+        found.append(verified(evidence.fine, fitted))
+    return found
+
+
+def answer(
+    bench: Bench,
+    records: Sequence[Record],
+    evidence: Evidence,
+    claim: Claim,
+    best: Fitted,
+    checked: Sequence[Verified],
+    *,
+    started: float,
+    pictures: bool,
+) -> Diagnosis:
+    """The answer that the fits of a case give.
+
+    claim, best : what they say and the fit that stands for it;  checked : what the engine says of it
+    """
     improved = best.hypothesis.scene(bench.scene, best.z)
     notes: list[str] = []
     claimed = () if claim.kind in ("none", "unknown") or claim.fit is None else _causes(claim.fit, claim, improved, bench.groups)
@@ -189,8 +222,7 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
     extras = pictures_of(evidence, best, [cause.at for cause in claimed]) if pictures else {}
     if claim.tied:
         extras["next_records"] = records_to_take(bench, records, evidence, claim, notes)
-    agreeing, differing = verified(evidence.fine, _winner_and_runner_up(evidence, best))
-    notes += agreeing
+    notes += [item.text for item in checked if not item.differs]
     notes += [f"{best.hypothesis.label}: the fit had not converged when it stopped." for _ in range(not best.converged)]
     return Diagnosis(
         scene=bench.scene,
@@ -204,7 +236,7 @@ def answer(bench: Bench, records: Sequence[Record], evidence: Evidence, *, start
         gaps=gaps(evidence.fine, evidence.nominal.residuals, evidence.null.residuals, best.residuals),
         parameters=nominal_estimates(best, bench.scene),
         notes=tuple(notes),
-        warnings=differing,
+        warnings=tuple(item.text for item in checked if item.differs),
         fits=fits_of(evidence, claim),
         driven=driven_scenes(evidence.fine, best, [record.name for record in records]),
         seconds=time.monotonic() - started,

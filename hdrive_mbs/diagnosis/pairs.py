@@ -58,15 +58,18 @@ def swapped(team: Team, simulator: Simulator, pair: Found, first: Label, others:
         own = item.fitted.hypothesis.rescaled(item.fitted.z)[0]
         base = Hypothesis(own.factors, own.added, {**own.loose, **second.loose})
         hypothesis = Hypothesis(own.factors, (*own.added, renamed(second.added[-1], base)), base.loose)
-        tasks.append(Task(hypothesis, hypothesis.start(pair.fitted.hypothesis.nominal_part(pair.fitted.z)), None, TOGETHER, FINE))
+        start = hypothesis.start(pair.fitted.hypothesis.nominal_part(pair.fitted.z))
+        tasks.append(Task(hypothesis, start, None, TOGETHER, FINE, beat=rivalling(pair.fitted)))
         names.append(pair.suspect)
     return those_that_ran(names, team.map(run_task, simulator, tasks))
 
 
-def alone(team: Team, simulator: Simulator, pair: Found, everything: Sequence[Suspect]) -> list[Found]:
+def alone(team: Team, simulator: Simulator, pair: Found, everything: Sequence[Suspect], best: Found) -> list[Found]:
     """The second cause of a pair without the first, from the values of the pair.
 
     The first may have done no more than bring the parameters to where the second shows.
+
+    best : single cause so far, with which it has to catch up
     """
     fitted = pair.fitted
     full = fitted.hypothesis.rescaled(fitted.z)[0]
@@ -77,7 +80,8 @@ def alone(team: Team, simulator: Simulator, pair: Found, everything: Sequence[Su
             old = suspect.all[0]
             added = full.added[-1:] if old.added else ()
             hypothesis = Hypothesis(old.factors, tuple(Added(item.effect, item.at, old.added[-1].name) for item in added), old.loose)
-            tasks.append(Task(hypothesis, hypothesis.start(fitted.hypothesis.nominal_part(fitted.z)), None, CONVERGED, FINE))
+            start = hypothesis.start(fitted.hypothesis.nominal_part(fitted.z))
+            tasks.append(Task(hypothesis, start, None, CONVERGED, FINE, beat=rivalling(best.fitted)))
             whose.append(suspect)
     return those_that_ran(whose, team.map(run_task, simulator, tasks))
 

@@ -48,7 +48,7 @@ def scan(simulator: Simulator, suspect: Suspect) -> Look | None:
     return best
 
 
-def fits_from(scanned: Sequence[tuple[Suspect, Look | None]]) -> list[tuple[Suspect, Task]]:
-    """Fits from the best points, of the parameters whose points are the best."""
+def fits_from(scanned: Sequence[tuple[Suspect, Look | None]], beat: float | None = None) -> list[tuple[Suspect, Task]]:
+    """Fits from the best points, of the parameters whose points are the best;  beat : a cost that they have to come down to."""
     there = sorted(((suspect, look) for suspect, look in scanned if look is not None), key=lambda pair: pair[1].cost)
-    return [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE)) for suspect, look in there[:FITTED]]
+    return [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE, beat=beat)) for suspect, look in there[:FITTED]]

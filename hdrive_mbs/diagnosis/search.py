@@ -176,11 +176,12 @@ class _Work:
     begin: Begin
     _elsewhere: set[tuple[Label, str]] = field(default_factory=set)
 
-    def scanned(self, everything: Sequence[Suspect]) -> list[Found]:
-        """Parameters tried all along their range, the best of them fitted from there."""
+    def scanned(self, everything: Sequence[Suspect], found: Sequence[Found]) -> list[Found]:
+        """Parameters tried all along their range, the best of them fitted from there as far as they may catch up with what was found."""
         some = worth_a_scan(everything)
         looks = self.team.map(scan, self.simulator, some, partial(self.said, "trying parameters along their range"))
-        asked = fits_from(list(zip(some, looks, strict=True)))
+        beat = rivalling(found[0].fitted) if found else None
+        asked = fits_from(list(zip(some, looks, strict=True)), beat)
         return cheapest(self.fitted(asked, "fitting parameters from where they came out best"))
 
     def from_grounds(self, base: Fitted, everything: Sequence[Suspect]) -> tuple[list[Found], list[tuple[Suspect, float]]]:
@@ -223,7 +224,7 @@ class _Work:
         brief = cheapest(self.fitted(tasks, "a few joint steps"))
         scanning = far and (not brief or brief[0].fitted.typical > ENOUGH)
         if scanning:
-            brief = cheapest([*brief, *self.scanned(everything)])
+            brief = cheapest([*brief, *self.scanned(everything, brief)])
         kept = brief[: worth(base.cost, [item.fitted.cost for item in brief], self.how.kept)]
         thorough = [
             (k < self.how.serious or item.suspect.label == kept[0].suspect.label) and not beyond(item.fitted, kept[0].fitted)
@@ -236,7 +237,7 @@ class _Work:
         ]
         found = cheapest(self.fitted([(item.suspect, task) for item, task in zip(kept, further_, strict=True)], "fitting the best"))
         if far and not scanning and (not found or found[0].fitted.typical > SEEN):
-            found = cheapest([*found, *self.scanned(everything)])
+            found = cheapest([*found, *self.scanned(everything, found)])
         if found and leaves(found[0].fitted.typical, base, ENOUGH) and not self.team.deadline.passed("laws and places passed over"):
             asked = [*not_begun(found, closer, best), *passed_over(found, first, chosen)]
             found = cheapest([*found, *self._others(asked, rivalling(found[0].fitted))])
@@ -263,7 +264,7 @@ class _Work:
 
     def _others(self, looks: Sequence[tuple[Suspect, Look]], beat: float) -> list[Found]:
         """A few joint steps from looks that had been left aside, and the best of them fitted to the end if they come down to a cost."""
-        tasks = [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE)) for suspect, look in looks]
+        tasks = [(suspect, Task(look.hypothesis, look.z, look.residuals, STEPS, FINE, beat=beat)) for suspect, look in looks]
         brief = cheapest(self.fitted(tasks, "other places of the best"))
         best = [(item.suspect, further(item.fitted, beat=beat)) for item in brief[: self.how.serious]]
         return [*brief[len(best) :], *self.fitted(best, "fitting the best")]

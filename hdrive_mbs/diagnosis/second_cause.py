@@ -106,7 +106,7 @@ def second_cause(
     known = [*together, *exchanged]
     found = contenders(team, coarse, known, first)
     everything = suspects(null.hypothesis, groups, tried)
-    others = alone(team, coarse, found[0], everything)
+    others = alone(team, coarse, found[0], everything, first)
     gained = first.fitted.cost - found[0].fitted.cost
     again = left(found[0].fitted) > enough(null, LEFT) and gained > TAKEN * max(first.fitted.cost - 0.5 * samples, 0.0)
     if again and not team.deadline.passed("the first cause again beside the second"):
@@ -117,5 +117,5 @@ def second_cause(
     elsewhere = [] if team.deadline.passed("causes of the pair at other places") else moved(team, coarse, found, tried)
     pairs = contenders(team, coarse, [*found, *elsewhere], first)
     if pairs[0].suspect.label not in {item.suspect.label for item in others}:
-        others += alone(team, coarse, pairs[0], everything)
+        others += alone(team, coarse, pairs[0], everything, first)
     return pair, pairs, tuple(others)

@@ -70,6 +70,11 @@ class Team:
                 worker.apart.state = "waiting"
             worker.end(0.0 if worker.is_busy else patience)
 
+    @property
+    def is_at_hand(self) -> bool:
+        """Whether processes are there already, which another map need not begin."""
+        return bool(self._running)
+
     def map(
         self,
         function: Callable[[Any, Item], Answer],

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -21,17 +22,17 @@ LONGEST = 4.0
 
 AGREES = 0.3
 """Standard deviations of the noise by which search and engine may differ before a warning says so."""
-FINER, NEWTON = 8.0, 1e-6
-"""The engine's step on rotor lines, as a part of the search's: the trapezoidal rule is of second order where the search is of
-fourth; and its Newton tolerance."""
+FINER, NEWTON = (4.0, 8.0, 16.0), 1e-6
+"""The engine's steps on rotor lines, each half of the one before, as parts of the search's: the trapezoidal rule is of second order where
+the search is of fourth; and its Newton tolerance."""
 
 
 def engine_difference(simulator: Simulator, fitted: Fitted) -> float:
     """Largest rms difference of a measured column between search and engine, in standard deviations of its noise.
 
-    On the beginning of the shortest record.  Where they differ on a rotor line, the engine runs again with half its step: the phase of
-    free vibration is late by (w h)^2/12 per radian with the trapezoidal rule, which is the engine's error and not the search's, and
-    falls to a quarter; both runs together give it without (Richardson).
+    On the beginning of the shortest record.  Where they differ on a rotor line, the engine runs again with half its step, twice at most:
+    the phase of free vibration is late by (w h)^2/12 per radian with the trapezoidal rule, which is the engine's error and not the
+    search's, and falls to a quarter; the last two runs together give it without (Richardson).
 
     Raises AnalysisError, SimulationError or ParameterError where the engine cannot run the scene.
     """
@@ -58,39 +59,44 @@ def engine_difference(simulator: Simulator, fitted: Fitted) -> float:
 
     if not scene.network().is_lateral:
         return worst(run(None))
-    step = simulator.step / FINER
-    coarse = run(step)
-    if worst(coarse) < AGREES:
-        return worst(coarse)
-    fine = run(0.5 * step)
-    return worst({name: fine[name] + (fine[name] - coarse[name]) / 3.0 for name in compared})
+    before = run(simulator.step / FINER[0])
+    found = worst(before)
+    for finer in FINER[1:]:
+        if found < AGREES:
+            break
+        finest = run(simulator.step / finer)
+        found = worst({name: finest[name] + (finest[name] - before[name]) / 3.0 for name in compared})
+        before = finest
+    return found
 
 
 def _shortest(simulator: Simulator) -> int:
     return min(range(len(simulator.trials)), key=lambda k: simulator.trials[k].samples)
 
 
-def verified(simulator: Simulator, fits: Sequence[Fitted]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Of each fit, the answer first, how far the engine is from its compiled run: notes, and warnings where that is too far."""
-    notes: list[str] = []
-    warnings: list[str] = []
-    for fitted in fits:
-        label = fitted.hypothesis.label
-        try:
-            difference = engine_difference(simulator, fitted)
-        except HdriveError as error:
-            notes.append(f"Not verified on the engine, {label}: {error}")
-            continue
-        agrees = difference < AGREES
-        trial = simulator.trials[_shortest(simulator)]
-        if trial.motions and not agrees:
-            held = ", ".join(trial.motions)
-            notes.append(
-                f"Not verified on the engine, {label}: in {trial.name!r} {held} follows a measured angle, which the engine does not."
-            )
-            continue
-        text = (
-            f"Search and multibody engine {'agree' if agrees else 'DIFFER'}: rms difference {difference:.2g} of the noise at most, {label}."
+@dataclass(frozen=True)
+class Verified:
+    """A sentence on how far the engine is from the compiled run of a fit;  differs : whether it is a warning."""
+
+    text: str
+    differs: bool = False
+
+
+def verified(simulator: Simulator, fitted: Fitted) -> Verified:
+    """How far the engine is from the compiled run of a fit, or why it cannot be asked."""
+    label = fitted.hypothesis.label
+    try:
+        difference = engine_difference(simulator, fitted)
+    except HdriveError as error:
+        return Verified(f"Not verified on the engine, {label}: {error}")
+    agrees = difference < AGREES
+    trial = simulator.trials[_shortest(simulator)]
+    if trial.motions and not agrees:
+        held = ", ".join(trial.motions)
+        return Verified(
+            f"Not verified on the engine, {label}: in {trial.name!r} {held} follows a measured angle, which the engine does not."
         )
-        (notes if agrees else warnings).append(text)
-    return tuple(notes), tuple(warnings)
+    return Verified(
+        f"Search and multibody engine {'agree' if agrees else 'DIFFER'}: rms difference {difference:.2g} of the noise at most, {label}.",
+        not agrees,
+    )

@@ -206,8 +206,9 @@ def test_a_second_cause_is_tried_without_the_first(simulator: Simulator) -> None
     [false] = [item for item in everything if item.label == ("quadratic_drag", "motor")]
     both = Hypothesis(factors, (*false.first[0].added, *true.first[0].added))
     pair = Found(true, fit(missing, both, both.start(), steps=12))
+    first = fit(missing, Hypothesis(factors, false.first[0].added), Hypothesis(factors, false.first[0].added).start(), steps=2)
     with Team(1) as team:
-        [single] = alone(team, missing, pair, everything)
+        [single] = alone(team, missing, pair, everything, Found(false, first))
     assert single.suspect.label == ("friction", "load")
     assert len(single.fitted.hypothesis.added) == 1
     assert single.fitted.chi_fit == pytest.approx(pair.fitted.chi_fit, rel=0.02)

@@ -106,7 +106,7 @@ def test_causes_are_held_against_the_better_model_and_looked_for_again_where_it_
     monkeypatch.setattr(gather, "search", search)
     monkeypatch.setattr(gather, "nominal_again", lambda *some: better if asked[-1] is null else None)
     with Team(1, deadline=Deadline(seconds)) as team:
-        _, _, used, single = gather._first(team, simulator, simulator, NOMINAL.factors, {}, [], lambda *said: None)
+        _, _, used, single, _ = gather._first(team, simulator, simulator, NOMINAL.factors, {}, [], lambda *said: None)
         left_out = team.deadline.left_out
     assert asked == [null, better][:searches]
     assert used is single.base is better

@@ -208,7 +208,7 @@ def test_the_engine_is_compared_without_the_error_of_its_own_step(record: hm.Rec
     sharp = {name: hm.Measured(channel=name, noise=2e-9) for name in ("disc.x", "disc.y")}
     simulator = Simulator(dataclasses.replace(bench(line(), 0.2), measured=sharp).trials(record.between(0.0, 0.2)), STEP)
     fitted = fit(simulator, Hypothesis(factors=()), np.zeros(0), steps=0)
-    monkeypatch.setattr("hdrive_mbs.diagnosis.verify.FINER", 2.0)
+    monkeypatch.setattr("hdrive_mbs.diagnosis.verify.FINER", (2.0, 4.0))
     sharpened = engine_difference(simulator, fitted)
     monkeypatch.setattr("hdrive_mbs.diagnosis.verify.AGREES", math.inf)
     plain = engine_difference(simulator, fitted)
