@@ -85,9 +85,10 @@ class Simulator:
         self.spans = self._spans()
         self.unseen: Mapping[str, Skipped] = {}
         self.runs = 0
-        self._forget()
+        self.forget()
 
-    def _forget(self) -> None:
+    def forget(self) -> None:
+        """Let go of the runs and lines that are kept for what is asked again."""
         self._lines = Lines(self.trials)
         self._kept: list[OrderedDict[object, Values | None]] = [OrderedDict() for _ in self.trials]
         self._started: tuple[Hypothesis, FloatArray, list[dict[str, float]]] | None = None
@@ -97,7 +98,7 @@ class Simulator:
 
     def __setstate__(self, state: dict[str, object]) -> None:
         self.__dict__.update(state)
-        self._forget()
+        self.forget()
 
     def _numbered(self) -> npt.NDArray[np.int64]:
         """Block of every residual: BLOCKS stretches of each column of each trial."""
@@ -120,7 +121,7 @@ class Simulator:
         other.unseen = {
             name: frozenset(k for k, trial in enumerate(self.trials) if trial.name in trials) for name, trials in unseen.items()
         }
-        other._forget()
+        other.forget()
         return other
 
     @property

@@ -14,6 +14,7 @@ from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.engine.solvers import Trapezoidal
 from hdrive_mbs.errors import HdriveError
+from hdrive_mbs.freed_memory import give_back
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -84,6 +85,8 @@ class Verified:
 
 def verified(simulator: Simulator, fitted: Fitted) -> Verified:
     """How far the engine is from the compiled run of a fit, or why it cannot be asked."""
+    simulator.forget()  # the engine needs the memory more
+    give_back()
     label = fitted.hypothesis.label
     try:
         difference = engine_difference(simulator, fitted)

@@ -64,6 +64,27 @@ def test_of_the_little_that_a_first_cause_leaves_a_second_one_takes_most(
     assert claim.fit is (two if both else one)
 
 
+@pytest.mark.parametrize(("more", "alike"), [(0.0002, True), (-0.001, True), (0.0003, False)])
+def test_single_causes_that_leave_alike_are_not_told_apart_by_their_odds(
+    fitted: tuple[Simulator, Fitted], more: float, alike: bool
+) -> None:
+    one, other = found(fitted[1], (DRAG,), 1.001, 1060.0), found(fitted[1], (RIPPLE,), 1.001 + more, 990.0)
+    faint = found(fitted[1], (Added(hm.ViscousDrag(coefficient=0.01), "motor", "drag"),), 1.001, 3.0)  # less than an effect needs
+    claim = judge(1.2, [one, other, faint])
+    assert claim.fit is one
+    assert claim.tied == ((RIPPLE.label,) if alike else ())
+    chances = claim.probabilities
+    assert chances[RIPPLE.label] == pytest.approx(0.5 * chances[DRAG.label] if alike else 0.0, abs=1e-6)
+    assert chances[faint.suspect.label] < 1e-6
+    assert sum(chances.values()) == pytest.approx(1.0)
+
+
+def test_an_effect_that_takes_no_more_than_a_trace_is_not_claimed_whatever_its_odds(fitted: tuple[Simulator, Fitted]) -> None:
+    """A null of our own eighteenth rotor set gave log odds of 67 to a mass on a support that took 4.5e-4."""
+    assert judge(1.00049, [found(fitted[1], (DRAG,), 1.00004, 67.5)]).kind == "none"
+    assert judge(0.99624, [found(fitted[1], (DRAG,), 0.99525, 152.2)]).kind == "effect"
+
+
 def test_what_is_nearly_right_leaves_more_of_a_strong_gap_and_nothing_of_none() -> None:
     assert nearly_right(400.0) == pytest.approx(math.exp(0.03 * math.log(400.0)))
     assert nearly_right(0.99) == 1.0
