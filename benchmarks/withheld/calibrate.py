@@ -88,13 +88,19 @@ def known_constants() -> dict[str, float]:
     return {name: value for name, value in vars(verdict).items() if name.isupper() and isinstance(value, float)}
 
 
+SMALL = 0.01
+"""Constants below it are no shares of something whole."""
+
+
 def grid(value: float) -> list[float]:
     """Values to try about a constant: of a share below 1 its distance to 1 is scaled, of a mean square its excess over 1.
 
-    A logarithm of odds, which may have any sign but is 0 or less here, is moved.
+    A logarithm of odds, which may have any sign but is 0 or less here, is moved; a small part of a mean square is scaled itself.
     """
     if value <= 0.0:
         return [value + move for move in (-2.0, -1.0, 0.0, 1.0, 2.0)]
+    if value < SMALL:
+        return [float(f"{value * factor:.4g}") for factor in FACTORS]
     if value < 1.0:
         return sorted({round(1.0 - (1.0 - value) * factor, 4) for factor in FACTORS if (1.0 - value) * factor < 1.0})
     if value < 2.0:

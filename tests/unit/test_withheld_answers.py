@@ -461,6 +461,7 @@ def test_the_verdict_can_be_drawn_again_from_stored_figures_with_other_constants
 def test_grids_of_constants_keep_to_their_kind() -> None:
     assert all(0.0 < value < 1.0 for value in grid(0.6))
     assert all(value > 1.0 for value in grid(1.15))
+    assert all(5e-5 < value < 5e-3 for value in grid(5.5e-4))
     assert {"ODDS", "TEMPERATURE"} <= set(known_constants())
     for value in known_constants().values():
         assert value in grid(value)
