@@ -24,12 +24,13 @@ nibble at what every model leaves, like permilles in what a data sheet calls exa
 TRACE = 5.5e-4
 """Mean square that an effect has to take away besides: with 300,000 samples next to nothing has high odds.  Of 23 nulls of our own rotor
 sets 9 to 18, opened, one let an effect with log odds of 67 take 4.5e-4 (c12 of the eighteenth, which had been claimed), the others 2.1e-4
-at most; the faintest true causes took 6.6e-4 and 9.9e-4."""
+at most; the faintest true causes took 6.6e-4 and 9.9e-4 (tests/unit/test_verdict_constants.py).  A null of our own ninth drive set (c17),
+opened after the limit was set, let 4.9e-4 be taken."""
 ALIKE, HALF = 2.5e-4, 0.5
 """Difference of what two single causes leave within which the records cannot tell them apart either, whatever their odds, for that much
-is what a plant's detail is worth to one law or another; and the part of the first one's probability that the other has then at least.  In
-our own rotor sets 9 to 18 the first of two so alike, 11 to 71 of log odds apart, was the right one in five of eight cases with known
-causes; internal damping of the shaft was taken for cross coupling of a bearing in two of the others."""
+is what a plant's detail is worth to one law or another (TRACE); and the part of the first one's probability that the other has then at
+least.  In our own rotor sets 9 to 18 the first of two so alike, 11 to 71 of log odds apart, was the right one in five of eight cases with
+known causes; internal damping of the shaft was taken for cross coupling of a bearing in two of the others."""
 CLEAN = 1.15
 """Mean square of the refitted nominal model up to which its misfit counts as noise."""
 EXPLAINED = 0.5
@@ -109,7 +110,10 @@ def judge(null_misfit: float, found: Sequence[Found], pairs: Sequence[Found] = (
     if not holds:
         return Claim("unknown", chosen, (), probabilities)
     alike = [(item, [item.suspect.label]) for item in singles] if chosen is best else [(item, _parts(item, found)) for item in pairs]
-    return Claim(kind_of(chosen), chosen, _tied(chosen, alike), probabilities)
+    close = [
+        (item, labels) for item, labels in alike if chosen.log_odds - item.log_odds < TIED or (chosen is best and _is_alike(item, chosen))
+    ]
+    return Claim(kind_of(chosen), chosen, _tied(chosen, close), probabilities)
 
 
 def _is_alike(item: Found, chosen: Found) -> bool:
@@ -117,15 +121,13 @@ def _is_alike(item: Found, chosen: Found) -> bool:
     return left(item.fitted) - left(chosen.fitted) < ALIKE
 
 
-def _tied(chosen: Found, alike: Sequence[tuple[Found, list[Label]]]) -> tuple[Label, ...]:
+def _tied(chosen: Found, close: Sequence[tuple[Found, list[Label]]]) -> tuple[Label, ...]:
     """Labels that the records cannot tell from what is claimed; of pairs what they do not share with it.
 
-    alike : fits with as many causes, the chosen one among them, and the labels of these
+    close : fits that cannot be told apart, the chosen one among them, and the labels of their causes
     """
-    own = [label for item, labels in alike if item is chosen for label in labels]
-    single = len(own) == 1
-    close = [labels for item, labels in alike if chosen.log_odds - item.log_odds < TIED or (single and _is_alike(item, chosen))]
-    return tuple(dict.fromkeys(label for labels in close for label in labels if label not in own))
+    own = [label for item, labels in close if item is chosen for label in labels]
+    return tuple(dict.fromkeys(label for _, labels in close for label in labels if label not in own))
 
 
 def _plain_first(found: Sequence[Found]) -> list[Found]:
