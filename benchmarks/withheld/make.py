@@ -36,6 +36,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--key", type=Path, help="archive for the truths; default: OUT.key.zip beside OUT")
     parser.add_argument("--open", action="store_true", help="truth.json in each case folder, nothing sealed")
     parser.add_argument("--causes", help="names of causes, separated by commas: one of these in every case; for open sets")
+    parser.add_argument("--nulls", action="store_true", help="nothing planted in any case: for the rate of false alarms")
     parser.add_argument("--noise", choices=("stated", "coloured"), default="stated", help="coloured: part of the white noise has a memory")
     parser.add_argument("--jobs", type=int, default=1, help="processes (default 1)")
     options = parser.parse_args(arguments)
@@ -47,6 +48,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not options.open and key.exists():
         parser.error(f"{key} exists already; name a new --key, a key is never overwritten")
 
+    if options.causes and options.nulls:
+        parser.error("--nulls plants nothing; leave --causes away")
     if options.causes and not options.open:
         parser.error("--causes says what a set holds; it goes with --open")
     names = tuple(options.causes.split(",")) if options.causes else ()
@@ -55,28 +58,36 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"--causes {','.join(unknown)}: the {options.bench} bench has {', '.join(known)}")
 
     seed = options.seed if options.seed is not None else secrets.randbits(63)
-    labels = make_set(options.bench, options.cases, seed, options.out, noise=options.noise, jobs=options.jobs, names=names)
+    labels = make_set(
+        options.bench, options.cases, seed, options.out, noise=options.noise, jobs=options.jobs, names=names, nulls=options.nulls
+    )
     if options.open:
         for case, truth in labels.items():
             (options.out / case / "truth.json").write_text(sealing.truth_text(truth), encoding="utf-8")
         return 0
     sealed = {case: sealing.seal(truth) for case, truth in labels.items()}
-    sealing.write_key(key, sealed, {"bench": options.bench, "cases": options.cases, "seed": seed, "noise": options.noise})
+    sealing.write_key(
+        key, sealed, {"bench": options.bench, "cases": options.cases, "seed": seed, "noise": options.noise, "nulls": options.nulls}
+    )
     sealing.write_commitments(options.out, sealed)
     print(f"{len(sealed)} cases in {options.out}, truths in {key}", file=sys.stderr)
     return 0
 
 
 def make_set(
-    bench: str, cases: int, seed: int, out: Path, *, noise: str = "stated", jobs: int = 1, names: Sequence[str] = ()
+    bench: str, cases: int, seed: int, out: Path, *, noise: str = "stated", jobs: int = 1, names: Sequence[str] = (), nulls: bool = False
 ) -> dict[str, dict[str, Any]]:
     """Write the records of every case; returns the labels.  Each case has random numbers of its own.
 
     names : of the only causes; if not given the mixture of all
+    nulls : nothing is planted in any case
     """
     order, *streams = np.random.SeedSequence(seed).spawn(cases + 1)
     rng = np.random.default_rng(order)
-    sites = singles(load(bench), names, cases, rng) if names else mixture(load(bench), cases, rng)
+    if nulls:
+        sites: list[list[Site]] = [[] for _ in range(cases)]
+    else:
+        sites = singles(load(bench), names, cases, rng) if names else mixture(load(bench), cases, rng)
     width = max(2, len(str(cases)))
     work = [(bench, f"{bench}-c{k + 1:0{width}d}", sites[k], streams[k], noise, out) for k in range(cases)]
     out.mkdir(parents=True)

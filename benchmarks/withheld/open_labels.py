@@ -1,6 +1,7 @@
 """Opens the labels of a sealed set, after the answers: ``python -m benchmarks.withheld.open_labels FOLDER ANSWERS.json --out truths.json``.
 
-The truths are proven against the commitments.  The file written is what ``score.py`` reads as TRUTHS.
+The truths are proven against the commitments.  The file written is what ``score.py`` reads as TRUTHS.  made.json beside it
+holds the seed, with which ``benchmarks.withheld.make`` makes the same records again.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from benchmarks.withheld.sealing import COMMITMENTS, SealError, open_key
+from benchmarks.withheld.sealing import COMMITMENTS, SealError, open_key, read_about
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -31,6 +32,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(error, file=sys.stderr)
         return 1
     options.out.write_text(json.dumps(labels, indent=1) + "\n", encoding="utf-8")
+    options.out.with_name("made.json").write_text(json.dumps(read_about(key), indent=1) + "\n", encoding="utf-8")
     print(f"{len(labels)} truths in {options.out}; SHA-256 of the answers: {hashlib.sha256(answers).hexdigest()}", file=sys.stderr)
     return 0
 

@@ -80,3 +80,10 @@ def open_key(path: Path, commitments: Path, *, answered: Iterable[str]) -> dict[
             )
         labels[case] = json.loads(item.text)
     return labels
+
+
+def read_about(path: Path) -> dict[str, Any]:
+    """How the set of a key was made: bench, number of cases, seed, noise; for after the labels were opened."""
+    with zipfile.ZipFile(path) as archive:
+        about: dict[str, Any] = json.loads(archive.read("about.json"))
+    return about

@@ -493,6 +493,12 @@ def test_labels_are_sealed_until_every_case_is_answered(quick: QuickBench, tmp_p
     assert sorted(truths) == cases
     committed = json.loads((folder / "commitments.json").read_text(encoding="utf-8"))
     assert all(re.fullmatch(r"[0-9a-f]{64}", item) for item in committed.values())
+    made = json.loads((tmp_path / "made.json").read_text(encoding="utf-8"))
+    again = tmp_path / "again"
+    assert (made["bench"], made["noise"], made["nulls"]) == ("drive", "stated", False)
+    assert make.main(["--bench", "drive", "--cases", str(made["cases"]), "--seed", str(made["seed"]), "--out", str(again)]) == 0
+    for case in cases:  # the seed in made.json gives the same records
+        assert (again / case / "run.parquet").read_bytes() == (folder / case / "run.parquet").read_bytes()
     assert len(set(committed.values())) == 12  # nulls with the same text differ by their salt
 
 
@@ -530,6 +536,21 @@ def test_a_set_of_named_causes_holds_nothing_else_and_is_never_sealed(
             make.main([*wrong, "--out", str(tmp_path / "other")])
         assert words in capsys.readouterr().err
     assert not (tmp_path / "other").exists()
+
+
+def test_a_set_of_nulls_holds_no_cause_and_is_sealed_all_the_same(
+    quick: QuickBench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "set"
+    assert make.main(["--bench", "drive", "--cases", "5", "--nulls", "--out", str(folder)]) == 0
+    answers = answers_for([f"drive-c{k:02d}" for k in range(1, 6)], tmp_path / "answers.json")
+    assert open_labels.main([str(folder), str(answers), "--out", str(tmp_path / "truths.json")]) == 0
+    truths = json.loads((tmp_path / "truths.json").read_text(encoding="utf-8"))
+    assert [labels["truth"] for labels in truths.values()] == [[]] * 5
+    assert json.loads((tmp_path / "made.json").read_text(encoding="utf-8"))["nulls"] is True
+    with pytest.raises(SystemExit):
+        make.main(["--bench", "drive", "--nulls", "--open", "--causes", "other", "--out", str(tmp_path / "other")])
+    assert "--nulls plants nothing" in capsys.readouterr().err
 
 
 @needs_round_1
