@@ -294,6 +294,15 @@ def test_a_case_that_is_not_there_is_named(cases: Path, capsys: pytest.CaptureFi
     assert "drive-c9" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("given", "words"), [("--raw", "--raw goes with --method training"), ("--truths", "--truths goes with --method oracle")]
+)
+def test_what_another_method_asks_for_is_refused(cases: Path, capsys: pytest.CaptureFixture[str], given: str, words: str) -> None:
+    with pytest.raises(SystemExit):
+        go(cases, given, str(cases))
+    assert words in capsys.readouterr().err
+
+
 # scores
 
 TRUTHS: dict[str, dict[str, Any]] = {
