@@ -17,6 +17,7 @@ from hdrive_mbs.diagnosis.locate.sources import TURNING
 from hdrive_mbs.diagnosis.locate.spectra import Spectra, spectra
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.errors import LawError, ParameterError, SimulationError
+from hdrive_mbs.freed_memory import give_back
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -97,4 +98,5 @@ def linearised(
     point = np.concatenate([z, np.zeros(offsets)])
     likelihood = Likelihood(made, point, np.concatenate([hypothesis.precisions, np.ones(offsets)]))
     responses = tuple(response(*item) for item in zip(motions, lines, made, strict=True))
+    give_back()
     return About(motions, lines, made, likelihood, responses)

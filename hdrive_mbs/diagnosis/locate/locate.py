@@ -85,10 +85,9 @@ class Localiser:
             raise AnalysisError("The fitted model cannot be run through the records at the full sample rate; use a shorter step.")
         self._about = about
         self._nowhere = about.likelihood.of(None, np.zeros(len(about.likelihood.at)), rounds=3)
-        self._first = about, self._nowhere
         if about.turning:
             self._settle(null.z)
-        self._tried = self._all()
+        self._tried = self._all(about)
 
     def _settle(self, z: FloatArray) -> None:
         """Linearised anew where the parameters go without a force, as long as they go far.
@@ -113,13 +112,13 @@ class Localiser:
         """All sources."""
         return tuple(dict.fromkeys(name for item in self._about.responses for name in item.of))
 
-    def _all(self) -> list[_Tried]:
+    def _all(self, first: About) -> list[_Tried]:
+        """All places, best first;  first : about the motion that the localisation began with."""
         loose = self._loosened()
         tried = self._tried_about(self._about, self._nowhere)
         if self._about.turning:
             # without a force parameters may have gone where they stand in for it: begin also where they were
-            about, _ = self._first
-            tried += self._tried_about(about, about.likelihood.of(None, np.zeros(len(about.likelihood.at)), rounds=0))
+            tried += self._tried_about(first, first.likelihood.of(None, np.zeros(len(first.likelihood.at)), rounds=0))
             tried = _one_a_place(tried)
         tried = self._closer(tried)
         for k, item in enumerate(tried):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain, islice
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +29,8 @@ UNKNOWN = 1e3
 """Standard deviation of an unknown offset, in those of the noise."""
 NARROW = 8
 """Most bins of a band for rotors: their forces have orders of the speed."""
+TOGETHER = 10
+"""Rows whose spectra are worked out together: the fewer the less memory, the more the quicker an observer goes through them."""
 LATTICES = 4
 """Positions of the steps of a rounded column at which its error is worked out."""
 
@@ -85,16 +88,19 @@ def spectra(
     for k, motion in enumerate(motions):
         trial = motion.trial
         whiten = lines[k].observer is None
-        rows: list[FloatArray] = [_residuals(trial, motion.columns, whiten), *slopes[k].astype(float)]
-        for number, column, size in sizes:
-            row = np.zeros(rows[0].shape)
-            if number == k:
-                there = np.isfinite(trial.columns[column])
-                shift = np.where(there, size, 0.0)
-                row[list(trial.columns).index(column)] = -_whitened(trial.measured[column], shift) if whiten else -shift
-            rows.append(row)
-        made.append(_of(motion, lines[k], np.array(rows), slopes[k]))
+        own = [_residuals(trial, motion.columns, whiten)]
+        rest = [(column, size) if number == k else None for number, column, size in sizes]
+        rows = chain(own, (row.astype(float) for row in slopes[k]), (item and _offset(trial, whiten, *item) for item in rest))
+        made.append(_of(motion, lines[k], rows, 1 + len(slopes[k]) + len(sizes), slopes[k]))
     return tuple(made)
+
+
+def _offset(trial: Trial, whiten: bool, column: str, size: float) -> FloatArray:
+    """What an offset of a column changes in the residuals of its trial, (columns, samples)."""
+    row = np.zeros((len(trial.columns), trial.samples))
+    shift = np.where(np.isfinite(trial.columns[column]), size, 0.0)
+    row[list(trial.columns).index(column)] = -_whitened(trial.measured[column], shift) if whiten else -shift
+    return row
 
 
 def slopes_of(
@@ -138,8 +144,8 @@ def _whitened(measured: Measured, values: FloatArray) -> FloatArray:
     return Whitener(replace(measured, offset=0.0), np.ones(len(values), dtype=bool), steady=True)(values)
 
 
-def _of(motion: Motion, line: Line, rows: FloatArray, slopes: Slopes) -> Spectra:
-    """rows : shape (1 + parameters and offsets, columns, samples)."""
+def _of(motion: Motion, line: Line, rows: Iterator[FloatArray | None], count: int, slopes: Slopes) -> Spectra:
+    """rows : of the residuals, parameters and offsets, (columns, samples) each, None where zero, made a few at a time;  count : of them."""
     trial, observer = motion.trial, line.observer
     window = window_of(trial)
     bins = int((HIGHEST if observer is None else HIGHEST_OF_ROTORS) * window) + 1
@@ -148,13 +154,9 @@ def _of(motion: Motion, line: Line, rows: FloatArray, slopes: Slopes) -> Spectra
     while 2 * edges[-1] < bins and (observer is None or edges[-1] < NARROW):
         edges.append(2 * edges[-1])
     bands = np.array(edges if observer is None else [*edges, *range(edges[-1] + NARROW, bins - NARROW // 2, NARROW)])
-    if observer is not None:
-        rows = observer.errors(rows)
-    values = np.stack([np.moveaxis(windowed(row, window, bins), 0, 2) for row in rows], axis=-1)  # one by one: less memory at a time
-    starts = window // 2 * (np.arange(len(values)) - 1)
+    starts = window // 2 * (np.arange(windows_of(trial.samples, window)) - 1)
     if observer is not None:  # what its errors hold of the noise before the end of a record shows whole in whole windows alone
         starts = starts[starts + window <= trial.samples]
-        values = values[: len(starts)]
     quiet = np.ones((len(starts), bins, len(trial.columns)))
     for k, column in enumerate(trial.columns):
         factor = _quieter(trial.measured[column], motion.columns[column], window, bins, bands)
@@ -164,10 +166,18 @@ def _of(motion: Motion, line: Line, rows: FloatArray, slopes: Slopes) -> Spectra
     if observer is None:
         late = np.array([trial.measured[column].late * trial.every for column in trial.columns])
         flat = np.fft.rfft(response, n=window)[:, :bins].T * np.exp(1j * frequencies[:, None] * late) * quiet
-        seen = np.asarray(values * quiet[..., None], np.complex64)
-        return Spectra(trial, seen, frequencies, bands, flat[..., None] * np.eye(len(late)), window, starts, slopes)
-    whitening = _against(observer, np.fft.rfft(response, n=FINER * window).T, quiet, trial.every)
-    seen = np.asarray(whitening @ values, np.complex64)
+        whitening = flat[..., None] * np.eye(len(late))
+    else:
+        whitening = _against(observer, np.fft.rfft(response, n=FINER * window).T, quiet, trial.every)
+    seen = np.zeros((len(starts), bins, len(trial.columns), count), np.complex64)
+    given = ((k, row) for k, row in enumerate(rows) if row is not None)
+    while some := list(islice(given, TOGETHER)):
+        left = np.array([row for _, row in some])
+        if observer is not None:
+            left = observer.errors(left)
+        for (k, _), row in zip(some, left, strict=True):
+            own = np.moveaxis(windowed(row, window, bins)[:, : len(starts)], 0, 2)
+            seen[..., k] = own * quiet if observer is None else (whitening @ own[..., None])[..., 0]
     return Spectra(trial, seen, frequencies, bands, whitening, window, starts, slopes)
 
 
@@ -195,10 +205,15 @@ def windowed(rows: FloatArray, window: int, bins: int) -> ComplexArray:
     sin^2 + cos^2 = 1, so the squares of all windows add up to those of the samples; bins above 0 stand for two.
     """
     hop, samples = window // 2, rows.shape[-1]
-    count = -(-samples // hop) + 1
+    count = windows_of(samples, window)
     padded = np.pad(rows, (*((0, 0),) * (rows.ndim - 1), (hop, (count + 1) * hop - hop - samples)))
     cut = padded[..., hop * np.arange(count)[:, None] + np.arange(window)] * sine(window)
     return np.asarray(np.fft.rfft(cut, axis=-1)[..., :bins] * np.sqrt(2.0 / window))
+
+
+def windows_of(samples: int, window: int) -> int:
+    """How many windows ``windowed`` makes."""
+    return -(-samples // (window // 2)) + 1
 
 
 def joined(values: ComplexArray, window: int, samples: int) -> FloatArray:
