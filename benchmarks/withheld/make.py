@@ -11,7 +11,7 @@ import os
 import secrets
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ import numpy as np
 from benchmarks.withheld import sealing
 from benchmarks.withheld.bench import BENCHES, load
 from benchmarks.withheld.folder import write_case
-from benchmarks.withheld.mixture import Site, mixture, singles
+from benchmarks.withheld.mixture import NULLS, SHARES, Site, mixture, singles
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -58,36 +58,38 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"--causes {','.join(unknown)}: the {options.bench} bench has {', '.join(known)}")
 
     seed = options.seed if options.seed is not None else secrets.randbits(63)
-    labels = make_set(
-        options.bench, options.cases, seed, options.out, noise=options.noise, jobs=options.jobs, names=names, nulls=options.nulls
-    )
+    shares = NULLS if options.nulls else SHARES
+    labels = make_set(options.bench, options.cases, seed, options.out, noise=options.noise, jobs=options.jobs, names=names, shares=shares)
     if options.open:
         for case, truth in labels.items():
             (options.out / case / "truth.json").write_text(sealing.truth_text(truth), encoding="utf-8")
         return 0
     sealed = {case: sealing.seal(truth) for case, truth in labels.items()}
-    sealing.write_key(
-        key, sealed, {"bench": options.bench, "cases": options.cases, "seed": seed, "noise": options.noise, "nulls": options.nulls}
-    )
+    about = {"bench": options.bench, "cases": options.cases, "seed": seed, "noise": options.noise, "nulls": options.nulls}
+    sealing.write_key(key, sealed, about)
     sealing.write_commitments(options.out, sealed)
     print(f"{len(sealed)} cases in {options.out}, truths in {key}", file=sys.stderr)
     return 0
 
 
 def make_set(
-    bench: str, cases: int, seed: int, out: Path, *, noise: str = "stated", jobs: int = 1, names: Sequence[str] = (), nulls: bool = False
+    bench: str,
+    cases: int,
+    seed: int,
+    out: Path,
+    *,
+    noise: str = "stated",
+    jobs: int = 1,
+    names: Sequence[str] = (),
+    shares: Mapping[str, float] = SHARES,
 ) -> dict[str, dict[str, Any]]:
     """Write the records of every case; returns the labels.  Each case has random numbers of its own.
 
-    names : of the only causes; if not given the mixture of all
-    nulls : nothing is planted in any case
+    names : of the only causes; if not given a mixture of all, with these shares of each kind
     """
     order, *streams = np.random.SeedSequence(seed).spawn(cases + 1)
     rng = np.random.default_rng(order)
-    if nulls:
-        sites: list[list[Site]] = [[] for _ in range(cases)]
-    else:
-        sites = singles(load(bench), names, cases, rng) if names else mixture(load(bench), cases, rng)
+    sites = singles(load(bench), names, cases, rng) if names else mixture(load(bench), cases, rng, shares)
     width = max(2, len(str(cases)))
     work = [(bench, f"{bench}-c{k + 1:0{width}d}", sites[k], streams[k], noise, out) for k in range(cases)]
     out.mkdir(parents=True)

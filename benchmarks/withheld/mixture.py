@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -10,10 +10,12 @@ from benchmarks.withheld.bench import Bench
 from benchmarks.withheld.case import KINDS, Cause
 
 SHARES = {"null": 0.15, "effect": 0.44, "parameter": 0.10, "sensor": 0.08, "unlisted": 0.12, "pair": 0.11}
+NULLS = {kind: float(kind == "null") for kind in KINDS}
+"""Nothing but nulls."""
 Site = tuple[str, str]  # name and place
 
 
-def counts(cases: int, shares: dict[str, float] = SHARES) -> dict[str, int]:
+def counts(cases: int, shares: Mapping[str, float] = SHARES) -> dict[str, int]:
     """Whole numbers in proportion to the shares, by largest remainder, that add up to ``cases``."""
     exact = {kind: cases * shares[kind] / sum(shares.values()) for kind in KINDS}
     found = {kind: int(value) for kind, value in exact.items()}
@@ -22,9 +24,9 @@ def counts(cases: int, shares: dict[str, float] = SHARES) -> dict[str, int]:
     return found
 
 
-def mixture(bench: Bench, cases: int, rng: np.random.Generator) -> list[list[Site]]:
+def mixture(bench: Bench, cases: int, rng: np.random.Generator, shares: Mapping[str, float] = SHARES) -> list[list[Site]]:
     """The sites of each case, shuffled; an empty list is a null case."""
-    wanted = counts(cases)
+    wanted = counts(cases, shares)
     found: list[list[Site]] = [[] for _ in range(wanted["null"])]
     for kind in ("effect", "parameter", "sensor", "unlisted"):
         found += [[site] for site in _rounds([cause for cause in bench.CAUSES if cause.kind == kind], wanted[kind], rng)]

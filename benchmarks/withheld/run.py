@@ -96,9 +96,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error("--each is at least 1, and more than that goes with --workers 0 and --method full alone")
     if options.search_seconds is not None and options.method != "full":
         parser.error("--search-seconds goes with --method full alone")
-    for name, needs in (("raw", ("training",)), ("truths", ("oracle",))):
-        if getattr(options, name) and options.method not in needs:
-            parser.error(f"--{name} goes with --method {needs[0]} alone")
+    for name, reader in (("raw", "training"), ("truths", "oracle")):
+        if getattr(options, name) and options.method != reader:
+            parser.error(f"--{name} goes with --method {reader} alone")
     more = tuple((name, str(path)) for name in ("raw", "truths") if (path := getattr(options, name)))
     return answer_cases(
         Job(options.bench, options.method, more, options.each, options.search_seconds),

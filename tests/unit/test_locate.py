@@ -11,6 +11,7 @@ import pytest
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.locate import Localiser, locate
+from hdrive_mbs.diagnosis.locate.about import linearised
 from hdrive_mbs.diagnosis.locate.motion import KnownForce, columns_of
 from hdrive_mbs.diagnosis.locate.spectra import joined, windowed
 from hdrive_mbs.diagnosis.measured import Measured
@@ -193,6 +194,26 @@ def test_windows_keep_energy_and_come_together_again() -> None:
     energy = doubled[:, 1:-1].sum() + 0.5 * (doubled[:, 0].sum() + doubled[:, -1].sum())
     assert energy == pytest.approx(values @ values, rel=1e-12)
     assert joined(parts, 512, 2500) == pytest.approx(values, abs=1e-12)
+
+
+def test_an_offset_of_one_record_changes_what_its_slope_says_and_nothing_in_another_record() -> None:
+    """Against records with another offset, in place of the slope's own reckoning."""
+    [first] = recorded().trials
+    other = dataclasses.replace(first, name="again")
+    about = linearised(Simulator([first, other], STEP), NOMINAL, ORIGIN)
+    assert about is not None
+    offsets = [(record, name) for record in (0, 1) for name, item in first.measured.items() if item.offset > 0.0]
+    assert len(offsets) > 1
+    for k, (record, name) in enumerate(offsets, start=1 + NOMINAL.size):
+        size = first.measured[name].offset
+        shifted = dataclasses.replace(first, columns=dict(first.columns) | {name: first.columns[name] + size})
+        there = linearised(Simulator([shifted, other] if record == 0 else [other, shifted], STEP), NOMINAL, ORIGIN)
+        assert there is not None
+        own, moved = about.spectra[record].values, there.spectra[record].values
+        digits = 4.0 * float(np.finfo(np.float32).eps * np.max(np.abs(moved[..., 0])))  # complex64 is what is kept
+        assert np.max(np.abs(own[..., k])) > 100.0 * digits
+        assert moved[..., 0] - own[..., 0] == pytest.approx(-own[..., k], abs=digits)
+        assert not about.spectra[1 - record].values[..., k].any()
 
 
 def test_an_unknown_place_is_named_with_the_known_ones() -> None:

@@ -22,6 +22,7 @@ from hdrive_mbs.diagnosis.force_orders import ForceOrders
 from hdrive_mbs.diagnosis.ground import screen_from
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.locate import Localiser
+from hdrive_mbs.diagnosis.locate import spectra as spectra_of_rows
 from hdrive_mbs.diagnosis.locate.linear import Transfers
 from hdrive_mbs.diagnosis.locate.motion import KnownForce, columns_of
 from hdrive_mbs.diagnosis.locate.observer import Observer, observer
@@ -260,6 +261,19 @@ def test_the_errors_of_an_observer_forget_a_vibration_and_keep_the_noise_white()
     # n numbers of a complex normal each: mean 1, standard deviation 1/sqrt(n); overlapping windows make it sqrt(1.5) times that
     n = left.shape[0] * left.shape[2] * spectra.widths
     assert np.all(np.abs(by_band[1:] - 1.0)[n[1:] > 300] < 5.0 * np.sqrt(1.5 / n[1:][n[1:] > 300]))
+
+
+def test_rows_give_the_same_spectra_one_by_one_as_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = []
+    for together in (1, 1000):
+        monkeypatch.setattr(spectra_of_rows, "TOGETHER", together)
+        found.append(localiser()._about.spectra[0].values)
+    alone, together_values = found
+    assert alone.shape[-1] == 1 + NOMINAL.size + sum(item.offset > 0.0 for item in trial().measured.values())
+    for k in range(alone.shape[-1]):
+        largest = float(np.max(np.abs(alone[..., k])))
+        assert largest > 0.0
+        assert together_values[..., k] == pytest.approx(alone[..., k], abs=4.0 * float(np.finfo(np.float32).eps) * largest)
 
 
 def ringing() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

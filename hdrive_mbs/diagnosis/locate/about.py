@@ -98,5 +98,5 @@ def linearised(
     point = np.concatenate([z, np.zeros(offsets)])
     likelihood = Likelihood(made, point, np.concatenate([hypothesis.precisions, np.ones(offsets)]))
     responses = tuple(response(*item) for item in zip(motions, lines, made, strict=True))
-    give_back()
+    give_back()  # what was in use on the way
     return About(motions, lines, made, likelihood, responses)
