@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from hdrive_mbs.compiled.llvm_text import Text
 from hdrive_mbs.compiled.structure import Step, Structure
 from hdrive_mbs.compiled.table_code import table_code
-from hdrive_mbs.compiled.vector_functions import VECTORS, vector_function
+from hdrive_mbs.compiled.vector_functions import BOTH, VECTORS, sine_and_cosine, vector_function
 
 _PLAIN = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv"}
 _COMPARE = {"lt": "olt", "le": "ole", "eq": "oeq"}
@@ -29,6 +29,7 @@ def functions(structure: Structure, width: int, *, shared: bool, fused: bool) ->
     declared: dict[str, str] = {}
     vectors = [name for name in VECTORS if fused and any(step.operation == name for step in structure.steps)]
     made = [vector_function(name, width, declared) for name in vectors]
+    made += [sine_and_cosine(width, declared)] if {"sin", "cos"}.issubset(vectors) else []
     orders = sorted({step.data[1] for step in structure.steps if isinstance(step.data, tuple)})
     made += [table_code(order, declared) for order in orders]
     for name, results in (("rates", structure.rates), ("read", structure.readings)):
@@ -44,6 +45,8 @@ class _Function:
         self.write = Text(width, declared)
         self.values: dict[int, str] = {}
         self.truths: dict[int, str] = {}
+        self.turned: dict[int, dict[str, str]] = {}
+        """Of angles whose sine and cosine are both needed the function's results."""
 
     def text(self, name: str, results: Sequence[int]) -> str:
         """Both sides of a branch are computed."""
@@ -53,12 +56,21 @@ class _Function:
             if k not in needed:
                 needed.add(k)
                 left += self.structure.steps[k].arguments
+        self.turned = self._angles_of_both(needed)
         for k in sorted(needed):
             self._step(k, self.structure.steps[k])
         for k, result in enumerate(results):
             self.write.store(self._real(result), "%out", k)
         parameters = "ptr noalias %y, i64 %row, ptr noalias %c, ptr noalias %tables, ptr noalias %columns, ptr noalias %out"
         return "\n".join([f"define internal void @{name}({parameters}) {{", "entry:", *self.write.lines, "  ret void", "}"])
+
+    def _angles_of_both(self, needed: set[int]) -> dict[int, dict[str, str]]:
+        """Angles of which both sine and cosine are needed, where there is a function of both."""
+        if not {"sin", "cos"}.issubset(self.vectors):
+            return {}
+        steps = [self.structure.steps[k] for k in needed]
+        sines, cosines = ({step.arguments[0] for step in steps if step.operation == name} for name in ("sin", "cos"))
+        return {angle: {} for angle in sines & cosines}
 
     def _real(self, k: int) -> str:
         """A step as a number; comparisons become 1 or 0."""
@@ -145,11 +157,21 @@ class _Function:
             return write.intrinsic(_INTRINSIC[operation], values[0])
         if operation == "pow" and self.structure.steps[step.arguments[1]].operation == "number":
             return self._power(values[0], self.structure.steps[step.arguments[1]].data)
+        if operation in ("sin", "cos") and step.arguments[0] in self.turned:
+            return self._sine_or_cosine(operation, step.arguments[0])
         if operation in self.vectors:
             return write.new(f"call {write.real} @vector_{operation}({', '.join(f'{write.real} {value}' for value in values)})")
         if operation in _LIBRARY:
             return write.library(operation, *values)
         raise ValueError(f"no machine code for the operation {operation!r}")
+
+    def _sine_or_cosine(self, operation: str, angle: int) -> str:
+        known, write = self.turned[angle], self.write
+        if not known:
+            pair = f"{{{write.real}, {write.real}}}"
+            both = write.new(f"call {pair} @vector_{BOTH}({write.real} {self._real(angle)})")
+            known |= {name: write.new(f"extractvalue {pair} {both}, {at}") for at, name in enumerate(("sin", "cos"))}
+        return known[operation]
 
     def _power(self, base: str, exponent: object) -> str:
         """Whole and half powers by products and a root."""

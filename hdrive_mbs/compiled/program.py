@@ -75,7 +75,9 @@ def program(rates: Sequence[Expression], readings: Sequence[Expression], variabl
         else:
             form.append((operation, None, tuple([place[id(item)] for item in arguments])))
     results = tuple([place[id(item)] for item in rates]), tuple([place[id(item)] for item in readings])
-    plan = planned(tuple(form), *results, tuple(variables))
+    first: dict[float, int] = {}
+    equal = tuple([first.setdefault(value, k) for k, value in enumerate(constants)])
+    plan = planned(tuple(form), *results, tuple(variables), equal)
     values = np.array([0.0, *constants])[plan.constants]
     values[plan.inverses] = 1.0 / values[plan.inverses]
     pieces = [item for _, item in tables.values()]

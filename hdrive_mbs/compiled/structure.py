@@ -65,9 +65,26 @@ data : of a variable its name, of a number its value, of a constant which one it
 """
 
 
+CHEAP = frozenset(
+    {
+        *("constant", "number", "variable", "add", "sub", "mul", "neg", "abs", "min", "max", "sign", "floor", "ceil"),
+        *("where", "lt", "le", "eq", "and", "or", "not"),
+    }
+)
+"""Operations that are computed as often as they are written: what is more than one of these is computed once."""
+
+
 @lru_cache(maxsize=64)  # for the points of a few groups: a form is larger than its structure, and soon planned anew
-def planned(form: Form, rates: tuple[int, ...], readings: tuple[int, ...], variables: tuple[str, ...]) -> Plan:
-    """The structure of a form.  What depends on time alone and reads tables becomes an input."""
+def planned(
+    form: Form, rates: tuple[int, ...], readings: tuple[int, ...], variables: tuple[str, ...], equal: tuple[int, ...] | None = None
+) -> Plan:
+    """The structure of a form.  What depends on time alone and reads tables becomes an input.
+
+    equal : of each constant the first one with its value; each other than all others if not given
+    """
+    stands = _once(form, equal)
+    form = tuple([(operation, data, tuple([stands[k] for k in arguments])) for operation, data, arguments in form])
+    rates, readings = tuple([stands[k] for k in rates]), tuple([stands[k] for k in readings])
     maker = _Maker(form, (*rates, *readings), variables)
     number = maker.number
     structure = Structure(
@@ -138,6 +155,30 @@ class _Maker:
         if operation == "div" and self.form[places[1]][0] == "constant":
             return self._add(Step("mul", (arguments[0], self._constant(self.form[places[1]][1], inverse=True))))
         return self._add(Step(operation, tuple(arguments)))
+
+
+def _once(form: Form, equal: tuple[int, ...] | None) -> list[int]:
+    """For each node the one that is computed in its place: the first with the same operations on the same values, where any is not cheap.
+
+    A law whose force and whose rate of a state both ask for the same power has it twice in its form, with constants of its own each time.
+    Sums and products stay apart, for their constants may be equal by chance at one point and not at the next, which would be two
+    structures; that a power has the same base of the same state and the same exponent is no chance.
+    """
+    same: list[int] = []
+    costs: list[bool] = []
+    known: dict[object, int] = {}
+    for k, (operation, data, arguments) in enumerate(form):
+        value = equal[data] if operation == "constant" and equal is not None else data
+        same.append(known.setdefault((operation, value, tuple([same[at] for at in arguments])), k))
+        costs.append(not _is_cheap(form, operation, arguments) or any(costs[at] for at in arguments))
+    return [same[k] if costs[k] else k for k in range(len(form))]
+
+
+def _is_cheap(form: Form, operation: str, arguments: tuple[int, ...]) -> bool:
+    """Whether computing it again takes next to nothing: quotients by a constant become products, and whole powers too."""
+    if operation in ("div", "pow"):
+        return form[arguments[1]][0] in ("constant", "number") if operation == "div" else form[arguments[1]][0] == "number"
+    return operation in CHEAP
 
 
 def _known_before(form: Form) -> set[int]:

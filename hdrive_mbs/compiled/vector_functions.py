@@ -10,11 +10,14 @@ shows beside their zeros alone.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from hdrive_mbs.compiled.llvm_text import Text
 
 VECTORS = ("sin", "cos", "exp", "tanh", "log", "pow")
 """What has a translation here."""
+BOTH = "sin_cos"
+"""Sine and cosine of the same angle, which take hardly more than one of them."""
 
 _SIN = (
     -1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
@@ -60,6 +63,31 @@ def _cos(text: Text) -> str:
 
 def _angle(text: Text, quarters: int) -> str:
     """sin(x + quarters pi/2)."""
+    return _turned(text, _around(text), quarters)
+
+
+def sine_and_cosine(width: int, declared: dict[str, str]) -> str:
+    """``define {<lanes>, <lanes>} @vector_sin_cos(<lanes>)``."""
+    text = Text(width, declared)
+    parts = _around(text)
+    pair = f"{{{text.real}, {text.real}}}"
+    first = text.new(f"insertvalue {pair} undef, {text.real} {_turned(text, parts, 0)}, 0")
+    both = text.new(f"insertvalue {pair} {first}, {text.real} {_turned(text, parts, 1)}, 1")
+    head = f"define internal {pair} @vector_{BOTH}({text.real} %x) alwaysinline {{\nentry:"
+    return "\n".join([head, *text.lines, f"  ret {pair} {both}", "}"])
+
+
+@dataclass(frozen=True)
+class _Around:
+    """Of an angle: sine and cosine of what is left beside whole quarters of a turn, their number, and whether it is beyond all measure."""
+
+    sine: str
+    cosine: str
+    quarters: str
+    far: str
+
+
+def _around(text: Text) -> _Around:
     shifted = text.fma("%x", text.number(2.0 / math.pi), text.number(_SHIFT))
     turns = text.negative(text.sub(shifted, text.number(_SHIFT)))
     r = text.fma(turns, text.number(_HALF_PI[0]), "%x")
@@ -70,13 +98,16 @@ def _angle(text: Text, quarters: int) -> str:
     near = text.sub(text.number(1.0), half)
     lost = text.sub(text.sub(text.number(1.0), near), half)
     cosine = text.add(near, text.fma(text.mul(square, square), text.polynomial(square, _COS), lost))
-    quarter = text.integers("add", text.bits(shifted), text.integer(quarters))
+    return _Around(sine, cosine, text.bits(shifted), text.compare("ogt", text.intrinsic("fabs", "%x"), text.number(_FAR)))
+
+
+def _turned(text: Text, parts: _Around, quarters: int) -> str:
+    quarter = text.integers("add", parts.quarters, text.integer(quarters))
     odd = text.new(f"trunc {text.whole} {quarter} to {text.truth}")
-    value = text.choose(odd, cosine, sine)
+    value = text.choose(odd, parts.cosine, parts.sine)
     sign = text.integers("shl", text.integers("and", quarter, text.integer(2)), text.integer(62))
     value = text.from_bits(text.integers("xor", text.bits(value), sign))
-    far = text.compare("ogt", text.intrinsic("fabs", "%x"), text.number(_FAR))
-    return text.choose(far, text.number(math.nan), value)
+    return text.choose(parts.far, text.number(math.nan), value)
 
 
 def _reduced(text: Text, x: str) -> tuple[str, str]:

@@ -97,6 +97,60 @@ def test_equal_laws_with_other_numbers_share_one_code() -> None:
     assert list(first.constants) != list(second.constants)
 
 
+def operations(law: Expression) -> list[str]:
+    return [step.operation for step in law_program(law).structure.steps]
+
+
+def hardening(exponent: float, smallest: float = 1e-6) -> Expression:
+    return record(np.maximum(abs(v) / 3.1, smallest) ** exponent)
+
+
+def test_a_power_that_a_law_asks_for_twice_is_computed_once_and_comes_out_the_same() -> None:
+    twice = record(hardening(1.3) * x + np.tanh(x) / (1.0 + hardening(1.3)))
+    assert operations(twice).count("pow") == 1
+    for at_v in POINTS:
+        want = float(evaluate(twice, {"x": np.float64(0.7), "v": np.float64(at_v), "t": np.float64(0.5)}))
+        assert_same(computed(twice, 0.7, at_v), want)
+
+
+def test_powers_that_differ_in_a_number_are_computed_apart() -> None:
+    for other in (hardening(1.4), hardening(1.3, smallest=1e-5), record(np.maximum(abs(x) / 3.1, 1e-6) ** 1.3)):
+        assert operations(record(hardening(1.3) + other)).count("pow") == 2
+
+
+def test_sums_and_products_with_numbers_that_are_equal_by_chance_keep_their_structure() -> None:
+    laws = [record(a * x + b * x + (x + a) * (x + b)) for a, b in ((3.7, 3.7), (3.7, 4.1))]
+    first, second = (law_program(law).structure for law in laws)
+    assert first == second
+
+
+def test_sine_and_cosine_of_one_angle_are_those_of_each_alone() -> None:
+    angle = record(3.0 * x + v)
+    sine, cosine = np.sin(angle), np.cos(angle)
+    for at_x in (*POINTS, 1e3, -7.5e5, 2e13):
+        alone = computed(sine, at_x, 0.4), computed(cosine, at_x, 0.4)
+        together = computed(record(2.0 * sine + 3.0 * cosine), at_x, 0.4)
+        np.testing.assert_equal(together, 2.0 * alone[0] + 3.0 * alone[1])
+
+
+@pytest.mark.parametrize("effect", [hm.PreslidingFriction, hm.LuGreFriction, hm.DahlFriction])
+def test_a_law_of_friction_has_each_power_once_whatever_its_values(effect: type[hm.Effect]) -> None:
+    def structure(**values: float) -> object:
+        law = effect(coulomb=0.02, **values)
+        return CompiledLine(build().with_effect(law, at="motor").network(), CHANNELS).structure
+
+    plain = {hm.PreslidingFriction: {"presliding": 1e-3, "drop": 0.3, "stribeck_speed": 2.3, "stribeck_exponent": 1.2, "exponent": 1.4},
+             hm.LuGreFriction: {"drop": 0.3, "stribeck_speed": 2.3, "stiffness": 40.0, "damping": 1e-4},
+             hm.DahlFriction: {"presliding": 1e-3, "exponent": 1.4}}[effect]  # fmt: skip
+    made = structure(**plain)
+    costly = [step for step in made.steps if step.operation in ("pow", "exp")]  # type: ignore[attr-defined]
+    contents = {(step.operation, step.arguments) for step in costly}
+    assert len(contents) == len(costly) <= 2
+    # values that are equal by chance change nothing
+    chance = {"stiffness": 2.3} if effect is hm.LuGreFriction else {"exponent": 1.2}
+    assert structure(**plain | chance) == made
+
+
 def with_effects() -> hm.Scene:
     """The train with laws of many kinds: states, kinematic terms, branches, tables."""
     train = build().replacing({"load.torque": hm.TableTorque(times=(0.0, 0.05, 0.1, 0.2), torques=(0.0, 8.0, 20.0, 20.0))})
