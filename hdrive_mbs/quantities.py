@@ -12,6 +12,8 @@ from functools import cache
 from typing import Any, ClassVar, Self
 from weakref import WeakKeyDictionary
 
+import numpy as np
+
 from hdrive_mbs.call_arguments import cannot_be_called
 from hdrive_mbs.errors import KeywordError, ParameterError, unknown_place
 from hdrive_mbs.quantity import Quantity
@@ -157,6 +159,10 @@ class Described:
     def _check_field(self, name: str, value: Any, quantity: Quantity) -> None:
         where = f"{type(self).__name__}.{name}"
         if quantity.sequence:
+            plain = _plain(value, quantity)
+            if plain is not None:
+                object.__setattr__(self, name, plain)
+                return
             try:
                 numbers = tuple(_as_float(f"{where}[{i}]", item, quantity.unit) for i, item in enumerate(value))
             except TypeError:
@@ -281,6 +287,22 @@ def _field_line(name: str, field: dataclasses.Field[Any]) -> str:
         words.append(f"default {readable(field.default, None)}")
     unit = "" if quantity is None else f" [{quantity.unit}]"
     return f"    {name}{unit} : {', '.join(words)}"
+
+
+def _plain(values: Any, quantity: Quantity) -> tuple[float, ...] | None:
+    """A tuple, list or array of nothing but floats that are all allowed, checked together; None for what needs a closer look.
+
+    A table of a record has ten thousands of them.
+    """
+    if isinstance(values, np.ndarray):
+        if values.ndim != 1 or values.dtype != float:
+            return None
+        array, numbers = values, tuple(values.tolist())
+    elif type(values) in (tuple, list) and set(map(type, values)) <= {float}:
+        array, numbers = np.array(values, float), tuple(values)
+    else:
+        return None
+    return numbers if not numbers or quantity.allows_all(array) else None
 
 
 def _as_float(where: str, value: Any, unit: str) -> float:

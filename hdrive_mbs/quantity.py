@@ -6,6 +6,9 @@ import math
 import warnings
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
 from hdrive_mbs.errors import ParameterError
 
 
@@ -52,6 +55,11 @@ class Quantity:
     def is_usual(self, value: float) -> bool:
         """Whether the value is one that is not warned of."""
         return self.usual is None or value == 0.0 or self.usual[0] <= value <= self.usual[1]
+
+    def allows_all(self, values: npt.NDArray[np.float64]) -> bool:
+        """Whether all values, one at least, are finite and in range and none is to be warned of, as far as that is known at a glance."""
+        ends = float(np.min(values)), float(np.max(values))  # NaN comes out of both
+        return self.usual is None and all(self.allows(value) for value in ends)
 
     def check(self, where: str, value: float, stacklevel: int = 4) -> None:
         """Raise ParameterError when the value is not finite or out of range; warn of one that is unusual.

@@ -10,12 +10,14 @@ from collections.abc import Callable
 from dataclasses import FrozenInstanceError, dataclass
 from typing import Any
 
+import numpy as np
 import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.errors import HdriveError, KeywordError, ParameterError, PlaceError, SceneError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.loads.law import LoadFunction
+from hdrive_mbs.quantities import Described, table
 from hdrive_mbs.scene import PlacedEffect
 from tests.verification.scenes import train
 
@@ -438,6 +440,29 @@ def test_a_class_of_a_user_s_own_may_have_its_own_initialiser() -> None:
 def test_a_bad_number_in_a_table_is_named_by_its_place(value: Any, message: str) -> None:
     with pytest.raises(ParameterError, match=message):
         hm.TableTorque(times=(0.0, 1.0), torques=(1.0, value))
+
+
+@pytest.mark.parametrize("made", [tuple, list, np.array])
+@pytest.mark.parametrize(
+    ("value", "message"), [(-0.5, "must be at least 0.0 s"), (math.nan, "must be a finite number"), (math.inf, "finite")]
+)
+def test_one_bad_number_in_a_long_table_is_found_wherever_it_is(made: Callable[[Any], Any], value: float, message: str) -> None:
+    @dataclass(frozen=True, kw_only=True)
+    class Log(Described):
+        times: tuple[float, ...] = table("s", "times", low=0.0)
+
+    numbers = np.linspace(0.0, 1.0, 5000).tolist()
+    kept = Log(times=made(numbers)).times
+    assert kept == tuple(numbers)
+    assert {type(item) for item in kept} == {float}
+    with pytest.raises(ParameterError, match=rf"Log\.times\[1234\] = .*{message}"):
+        Log(times=made([*numbers[:1234], value, *numbers[1235:]]))
+
+
+def test_a_table_of_whole_numbers_or_of_none_is_one_of_floats() -> None:
+    law = hm.TableTorque(times=np.array([0, 1]), torques=[1, np.float64(2.5)])  # type: ignore[arg-type]
+    assert law.times == (0.0, 1.0)
+    assert {type(item) for item in (*law.times, *law.torques)} == {float}
 
 
 def test_a_table_must_be_a_sequence() -> None:
