@@ -1,0 +1,1 @@
+"""What each law of the library costs in a compiled run."""
