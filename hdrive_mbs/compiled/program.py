@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.compiled.structure import Structure, planned
+from hdrive_mbs.compiled.structure import Structure, shaped
 from hdrive_mbs.compiled.time_inputs import TIME, TimeInput, digest, time_input
 from hdrive_mbs.expression import Expression, Pieces, in_order
 
@@ -75,9 +75,7 @@ def program(rates: Sequence[Expression], readings: Sequence[Expression], variabl
         else:
             form.append((operation, None, tuple([place[id(item)] for item in arguments])))
     results = tuple([place[id(item)] for item in rates]), tuple([place[id(item)] for item in readings])
-    first: dict[float, int] = {}
-    equal = tuple([first.setdefault(value, k) for k, value in enumerate(constants)])
-    plan = planned(tuple(form), *results, tuple(variables), equal)
+    plan = shaped(tuple(form), *results, tuple(variables)).plan(constants)
     values = np.array([0.0, *constants])[plan.constants]
     values[plan.inverses] = 1.0 / values[plan.inverses]
     pieces = [item for _, item in tables.values()]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
@@ -72,31 +72,50 @@ CHEAP = frozenset(
     }
 )
 """Operations that are computed as often as they are written: what is more than one of these is computed once."""
+KEPT = 8
+"""Plans of a form that are kept."""
 
 
 @lru_cache(maxsize=64)  # for the points of a few groups: a form is larger than its structure, and soon planned anew
-def planned(
-    form: Form, rates: tuple[int, ...], readings: tuple[int, ...], variables: tuple[str, ...], equal: tuple[int, ...] | None = None
-) -> Plan:
-    """The structure of a form.  What depends on time alone and reads tables becomes an input.
+def shaped(form: Form, rates: tuple[int, ...], readings: tuple[int, ...], variables: tuple[str, ...]) -> Shaped:
+    """A form with its results, ready to be planned for constants."""
+    return Shaped(form, rates, readings, variables)
 
-    equal : of each constant the first one with its value; each other than all others if not given
-    """
-    stands = _once(form, equal)
-    form = tuple([(operation, data, tuple([stands[k] for k in arguments])) for operation, data, arguments in form])
-    rates, readings = tuple([stands[k] for k in rates]), tuple([stands[k] for k in readings])
-    maker = _Maker(form, (*rates, *readings), variables)
-    number = maker.number
-    structure = Structure(
-        tuple(maker.steps),
-        tuple(number[k] for k in rates),
-        tuple(number[k] for k in readings),
-        len(variables) - 1,
-        1 + len(maker.inputs),
-        len(maker.constants),
-        len(maker.tables),
-    )
-    return Plan(structure, [k for k, _ in maker.constants], maker.inverses(), tuple(maker.inputs.values()), tuple(maker.tables))
+
+class Shaped:
+    """A form with its results, planned once for each way in which constants of parts that are alike are equal."""
+
+    def __init__(self, form: Form, rates: tuple[int, ...], readings: tuple[int, ...], variables: tuple[str, ...]) -> None:
+        self._form, self._rates, self._readings, self._variables = form, rates, readings, variables
+        self._asked = _constants_of_parts_alike(form)
+        self._plans: dict[tuple[int, ...], Plan] = {}
+
+    def plan(self, constants: Sequence[float]) -> Plan:
+        """The structure for constants with these values.  What depends on time alone and reads tables becomes an input."""
+        first: dict[float, int] = {}
+        equal = tuple([first.setdefault(constants[k], k) for k in self._asked])
+        if equal not in self._plans:
+            if len(self._plans) >= KEPT:
+                self._plans.clear()
+            self._plans[equal] = self._planned(dict(zip(self._asked, equal, strict=True)))
+        return self._plans[equal]
+
+    def _planned(self, equal: Mapping[int, int]) -> Plan:
+        stands = _once(self._form, equal)
+        form = tuple([(operation, data, tuple([stands[k] for k in arguments])) for operation, data, arguments in self._form])
+        rates, readings = [stands[k] for k in self._rates], [stands[k] for k in self._readings]
+        maker = _Maker(form, (*rates, *readings), self._variables)
+        number = maker.number
+        structure = Structure(
+            tuple(maker.steps),
+            tuple(number[k] for k in rates),
+            tuple(number[k] for k in readings),
+            len(self._variables) - 1,
+            1 + len(maker.inputs),
+            len(maker.constants),
+            len(maker.tables),
+        )
+        return Plan(structure, [k for k, _ in maker.constants], maker.inverses(), tuple(maker.inputs.values()), tuple(maker.tables))
 
 
 class _Maker:
@@ -157,24 +176,41 @@ class _Maker:
         return self._add(Step(operation, tuple(arguments)))
 
 
-def _once(form: Form, equal: tuple[int, ...] | None) -> list[int]:
-    """For each node the one that is computed in its place: the first with the same operations on the same values, where any is not cheap.
+def _once(form: Form, equal: Mapping[int, int]) -> list[int]:
+    """For each node the one that is computed in its place: for one that is not cheap the first with the same arguments.
 
     A law whose force and whose rate of a state both ask for the same power has it twice in its form, with constants of its own each time.
     Sums and products stay apart, for their constants may be equal by chance at one point and not at the next, which would be two
     structures; that a power has the same base of the same state and the same exponent is no chance.
+
+    equal : for constants the first one with the same value, themselves if not given
     """
     same: list[int] = []
-    costs: list[bool] = []
     known: dict[object, int] = {}
     for k, (operation, data, arguments) in enumerate(form):
-        value = equal[data] if operation == "constant" and equal is not None else data
+        value = equal.get(data, data) if operation == "constant" else data
         same.append(known.setdefault((operation, value, tuple([same[at] for at in arguments])), k))
-        costs.append(not _is_cheap(form, operation, arguments) or any(costs[at] for at in arguments))
-    return [same[k] if costs[k] else k for k in range(len(form))]
+    return [k if _is_cheap(form, *form[k]) else same[k] for k in range(len(form))]
 
 
-def _is_cheap(form: Form, operation: str, arguments: tuple[int, ...]) -> bool:
+def _constants_of_parts_alike(form: Form) -> tuple[int, ...]:
+    """Constants of costly parts of which there are several that differ in their constants at most."""
+    stands = _once(form, dict.fromkeys((data for operation, data, _ in form if operation == "constant"), -1))
+    asked: set[int] = set()
+    left = [k for first, k in enumerate(stands) if k != first for k in (first, k)]
+    seen: set[int] = set()
+    while left:
+        k = left.pop()
+        if k not in seen:
+            seen.add(k)
+            operation, data, arguments = form[k]
+            left += arguments
+            if operation == "constant":
+                asked.add(data)
+    return tuple(sorted(asked))
+
+
+def _is_cheap(form: Form, operation: str, _data: object, arguments: tuple[int, ...]) -> bool:
     """Whether computing it again takes next to nothing: quotients by a constant become products, and whole powers too."""
     if operation in ("div", "pow"):
         return form[arguments[1]][0] in ("constant", "number") if operation == "div" else form[arguments[1]][0] == "number"

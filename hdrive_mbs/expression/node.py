@@ -52,10 +52,10 @@ class Expression:
         return add(as_node(other), self)
 
     def __sub__(self, other: Value) -> Expression:
-        return add(self, negate(as_node(other)))
+        return subtract(self, as_node(other))
 
     def __rsub__(self, other: Value) -> Expression:
-        return add(as_node(other), negate(self))
+        return subtract(as_node(other), self)
 
     def __mul__(self, other: Value) -> Expression:
         return multiply(self, as_node(other))
@@ -240,13 +240,25 @@ def truth(a: Expression) -> Expression:
 
 def add(a: Expression, b: Expression) -> Expression:
     """a + b without useless zeros."""
-    if is_constant(a, 0.0):
+    # sums, differences and products are made by the ten thousand for each point of a search: no call that can be spared
+    first, second = a.operation, b.operation
+    if first == "constant" and a.data == 0.0:
         return b
-    if is_constant(b, 0.0):
-        return a
-    if b.operation == "neg":
-        return make("sub", a, b.arguments[0])
-    return make("add", a, b)
+    if second == "constant":
+        if b.data == 0.0:
+            return a
+        if first == "constant":
+            return make("add", a, b)
+    if second == "neg":
+        return Expression("sub", (a, b.arguments[0]))
+    return Expression("add", (a, b))
+
+
+def subtract(a: Expression, b: Expression) -> Expression:
+    """a - b without useless zeros: a + (-b)."""
+    if a.operation == "constant" or b.operation in ("constant", "neg"):
+        return add(a, negate(b))
+    return Expression("sub", (a, b))
 
 
 def negate(a: Expression) -> Expression:
@@ -256,18 +268,21 @@ def negate(a: Expression) -> Expression:
 
 def multiply(a: Expression, b: Expression) -> Expression:
     """a * b with constants gathered in front."""
-    if is_constant(b):
+    if b.operation == "constant":
         a, b = b, a
-    if is_constant(a):
-        if a.data == 0.0:
+    if a.operation == "constant":
+        factor = a.data
+        if factor == 0.0:
             return a
-        if a.data == 1.0:
+        if factor == 1.0:
             return b
-        if a.data == -1.0:
+        if factor == -1.0:
             return negate(b)
-        if b.operation == "mul" and is_constant(b.arguments[0]):
-            return multiply(constant(a.data * b.arguments[0].data), b.arguments[1])
-    return make("mul", a, b)
+        if b.operation == "mul" and b.arguments[0].operation == "constant":
+            return multiply(constant(factor * b.arguments[0].data), b.arguments[1])
+        if b.operation == "constant":
+            return make("mul", a, b)
+    return Expression("mul", (a, b))
 
 
 def divide(a: Expression, b: Expression) -> Expression:

@@ -25,7 +25,7 @@ from models import drive_bench, rotor_bench
 
 KEPT: tuple[Any, ...] = (
     topology._joints, topology._check, topology._layout, shaft_section._ends, shaft_section._matrices, claims._values,
-    groups._groups, linear_forces._shares, constant_mass._factor, constant_mass._column, structure.planned,
+    groups._groups, linear_forces._shares, constant_mass._factor, constant_mass._column, structure.shaped,
 )  # fmt: skip
 
 BENCHES: dict[str, tuple[Callable[[], Bench], Callable[[], hm.Scene], list[str], int]] = {
