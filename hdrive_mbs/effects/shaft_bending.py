@@ -53,10 +53,14 @@ def moment_at(piece: ShaftPiece, share: float) -> tuple[BendingShape, float]:
 
 
 def bent_shapes(piece: ShaftPiece) -> list[tuple[BendingShape, float]]:
-    """Two shapes s_k into which a piece bends, with stiffness: energy = sum(stiffness s_k^2)/2 in each plane."""
-    stiffness, vectors = np.linalg.eigh(piece.bending[np.ix_(_X, _X)])
-    found = []
-    for value, vector in list(zip(stiffness, vectors.T, strict=True))[2:]:  # two more move it as a rigid body
-        shape = _shape(piece, vector)
-        found.append((shape, float(value) * shape.size**2))
-    return found
+    """Two shapes s_k [m] into which a piece bends, with stiffness [N/m]: energy = sum(stiffness s_k^2)/2 in each plane.
+
+    A uniform piece of length L is two springs, shear included:  s_0 = L/2 (theta_b - theta_a)  and
+    s_1 = x_b - x_a - L/2 (theta_a + theta_b), for both displace the ends in ways that store no energy together.  Read off its stiffness:
+    with f_0, f_1 these factors over (x_a, theta_a, x_b, theta_b), K = k_0 f_0 f_0^T + k_1 f_1 f_1^T.
+    """
+    plane, half = piece.bending[np.ix_(_X, _X)], 0.5 * piece.length
+    turned, sheared = 0.5 * (plane[1, 1] - plane[1, 3]) / half**2, plane[0, 0]
+    shapes = (np.array([0.0, -half, 0.0, half]), float(turned)), (np.array([-1.0, -half, 1.0, -half]), float(sheared))
+    pairs = ((dict(zip("xy", _rows(values), strict=True)), stiffness) for values, stiffness in shapes)
+    return [(BendingShape({key: piece.stretch(row) for key, row in rows.items()}, 1.0), stiffness) for rows, stiffness in pairs]

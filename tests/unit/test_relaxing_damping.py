@@ -43,8 +43,8 @@ def test_turning_shaft_sags_sideways_and_brakes_the_drive(speed: float) -> None:
     assert abs(found - bent) < 1e-8 * abs(bent)  # outer damping leaves exp(-c w_k^2/2 T) = 3e-11 of the start
     stretch = -1j * speed / (1.0 / RELAXATION - 1j * speed) * bent
     heat = SHAFT * TIME / RELAXATION * abs(stretch) ** 2 / RELAXATION
-    # the drive's torque is read beside rigid steps of the spin: rounding of the whole line's torques
-    assert response.values["drive.torque"][-1] * speed == pytest.approx(heat, rel=1e-5)
+    # the drive's torque is read beside rigid steps of the spin: rounding of the whole line's torques, some 1e-5 of it at each sample
+    assert np.mean(response.values["drive.torque"][-400:]) * speed == pytest.approx(heat, rel=1e-6)
 
 
 def test_static_deflection_of_a_turning_line_has_the_sideways_sag_in_it() -> None:
