@@ -52,6 +52,19 @@ def test_the_last_four_sets_together_are_the_sums_of_theirs(bench: str) -> None:
     assert told == f"cause right in {with_interval('effect right')}, place right in {with_interval('place right')}, both of two in {pairs}"
 
 
+def test_the_nulls_of_their_own_are_told_as_they_came_out() -> None:
+    text = (ROOT / "docs" / "diagnosis.md").read_text("utf-8")
+    [told] = re.findall(r"^Nulls of their own, .+: (.+)\.$", text, re.MULTILINE)
+    kept = [
+        json.loads((OWN / f"{bench}_nulls" / "results.json").read_text("utf-8"))["methods"]["diagnosis"]["nulls kept"]
+        for bench in ("drive", "rotor")
+    ]
+    kept.append({name: kept[0][name] + kept[1][name] for name in ("right", "of")})
+    drive, rotor, both = ("{} ({:.2f} to {:.2f})".format(share(found), *interval(found["right"], found["of"])) for found in kept)
+    drive, rotor = (words.replace(" (", f"{{}} on the {bench} bench (") for words, bench in ((drive, "drive"), (rotor, "rotor")))
+    assert told == f"{drive.format(' kept')} and {rotor.format('')}, together {both}"
+
+
 def test_the_documentation_leaves_out_no_set_since_the_first_it_names() -> None:
     """Of each bench the last ones without a gap: none that went badly is passed over."""
     for bench in ("drive", "rotor"):
