@@ -23,7 +23,10 @@ def measure(options: Namespace) -> Found:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure and write the results."""
     return run(
-        command("Laws in compiled runs.", quick="40 samples of some laws", repeats=5, repeated="runs of each law"), arguments, measure, HERE
+        command("Laws in compiled runs.", quick="40 samples of some laws", repeats=12, repeated="runs of each law"),
+        arguments,
+        measure,
+        HERE,
     )
 
 

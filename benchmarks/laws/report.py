@@ -12,8 +12,8 @@ def report(numbers: Mapping[str, Any]) -> str:
         "# Laws in compiled runs",
         "",
         f"{numbers['about']['processor']}, {numbers['lanes']} lanes, CPU seconds, least of {numbers['repeats']}. Each law at one place, as"
-        " a search begins with it; its time is told in that of the run without any law. The step error is the largest difference from the"
-        " run with half the step, of the largest reading.",
+        " a search begins with it; its time is told in that of the run without any law, both in turns. The step error is the largest"
+        " difference from the run with half the step, of the largest reading.",
     ]
     for bench in dict.fromkeys(row["bench"] for row in numbers["rows"]):
         rows = sorted((row for row in numbers["rows"] if row["bench"] == bench), key=lambda row: -row["of_nominal"])

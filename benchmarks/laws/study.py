@@ -70,17 +70,24 @@ def benches() -> tuple[Bench, ...]:
 def study(*, quick: bool, repeats: int) -> dict[str, Any]:
     """Rows: bench, law, at, operations, costly (operation -> number), run_s (least of the repeats), of_nominal, step_error.
 
+    of_nominal : time over that of the run without the law, both in turns, least of each
     step_error : largest difference from the run with half the step, of the largest reading;  NaN where a run is not finite
     """
+    samples = 40 if quick else 1000
     rows: list[dict[str, Any]] = []
     for bench in benches():
-        nominal = _row(bench, bench.scene, quick, repeats)
-        rows.append({"bench": bench.name, "law": "none", "at": "", **nominal, "of_nominal": 1.0})
-        for law in _one_of_each(bench.scene, quick):
-            item = law.starts[0]
-            made = _row(bench, bench.scene.with_effect(item.effect, at=item.at, name=item.name), quick, repeats)
-            share = made["run_s"] / nominal["run_s"]
-            rows.append({"bench": bench.name, "law": law.kind.__name__, "at": law.at, **made, "of_nominal": share})
+        nominal = _line(bench, bench.scene)
+        laws = [(item.kind.__name__, item.at, item.starts[0]) for item in _one_of_each(bench.scene, quick)]
+        lines = [(name, at, _line(bench, bench.scene.with_effect(start.effect, at=at, name=start.name))) for name, at, start in laws]
+        for name, at, line in [("none", "", nominal), *lines]:
+            own, without = _in_turns(bench, line, nominal, samples, repeats)
+            costs = {
+                "operations": _operations(line.structure),
+                "costly": _costly(line.structure),
+                "run_s": own,
+                "of_nominal": own / without,
+            }
+            rows.append({"bench": bench.name, "law": name, "at": at, **costs, "step_error": _step_error(bench, line, samples)})
     return {"about": about(), "lanes": processor().lanes, "repeats": repeats, "rows": rows}
 
 
@@ -92,18 +99,27 @@ def _one_of_each(scene: Scene, quick: bool) -> list[Candidate]:
     return [item for name, item in found.items() if not quick or name in QUICK]
 
 
-def _row(bench: Bench, scene: Scene, quick: bool, repeats: int) -> dict[str, Any]:
+def _line(bench: Bench, scene: Scene) -> CompiledLine:
     network = scene.network()
-    line = CompiledLine(without_idle(network) if network.is_lateral else network, bench.channels)
-    samples = 40 if quick else 1000
-    taken = []
-    for _ in range(repeats):
-        begun = time.process_time()
-        whole = _run(bench, line, samples, bench.inner)
-        taken.append(time.process_time() - begun)
-    half = _run(bench, line, samples, 2 * bench.inner)
-    error = float(np.max(np.abs(whole - half)) / np.max(np.abs(half))) if np.isfinite(whole).all() and np.isfinite(half).all() else np.nan
-    return {"operations": _operations(line.structure), "costly": _costly(line.structure), "run_s": min(taken), "step_error": error}
+    return CompiledLine(without_idle(network) if network.is_lateral else network, bench.channels)
+
+
+def _in_turns(bench: Bench, line: CompiledLine, nominal: CompiledLine, samples: int, repeats: int) -> tuple[float, float]:
+    """CPU seconds of a run of both lines, least of the repeats after a first one that is not counted."""
+    taken: tuple[list[float], list[float]] = ([], [])
+    for _ in range(repeats + 1):
+        for some, times in zip((line, nominal), taken, strict=True):
+            begun = time.process_time()
+            _run(bench, some, samples, bench.inner)
+            times.append(time.process_time() - begun)
+    return min(taken[0][1:]), min(taken[1][1:])
+
+
+def _step_error(bench: Bench, line: CompiledLine, samples: int) -> float:
+    whole, half = (_run(bench, line, samples, parts * bench.inner) for parts in (1, 2))
+    if not (np.isfinite(whole).all() and np.isfinite(half).all()):
+        return float("nan")
+    return float(np.max(np.abs(whole - half)) / np.max(np.abs(half)))
 
 
 def _run(bench: Bench, line: CompiledLine, samples: int, inner: int) -> FloatArray:
