@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +13,8 @@ from hdrive_mbs.diagnosis.result import NOWHERE
 WORDS = ("none", "unknown")
 """Entries of a ranking that are no causes."""
 TINY = 1e-300
+ROUNDING = 1e-9
+"""Of probabilities that add up."""
 NAMED = 8.0
 """Odds of a label with a name over one without, before any record is seen.  Of the causes of our own sets up to the ninth rotor set
 167 of 190 (drive) and 108 of 126 (rotor) have a name, which 38 of 87 and 55 of 118 labels share: 9.4 and 6.9."""
@@ -32,7 +34,7 @@ def answer_of(case: str, finding: Finding, names: Names) -> dict[str, Any]:
     verdict = finding.verdict
     if verdict not in WORDS:
         verdict = _verdict([name for name, _ in claimed])
-    ranking = ranking_of(finding.ranking, names, [item.label for item in finding.claimed])
+    ranking = ranking_of(finding.ranking, names, _companions(finding, names) if claimed else ())
     chances = {(item["effect"], item["at"]): item["probability"] for item in ranking}
     return {
         "case": case,
@@ -55,15 +57,20 @@ def failed_answer(case: str, error: str, seconds: float) -> dict[str, Any]:
     return {"case": case, "verdict": "unknown", **nothing, "gap": {}, "seconds": seconds, "error": error}
 
 
-def ranking_of(ranking: Mapping[Label, float], names: Names, together: Sequence[Label] = ()) -> list[dict[str, Any]]:
+def ranking_of(ranking: Mapping[Label, float], names: Names, left_out: Collection[Label] = ()) -> list[dict[str, Any]]:
     """Names by falling probability: labels with one name are added up, at the place of the most probable of them.
 
-    together : causes that are claimed together; they share one probability, which counts once for each name
+    Two causes that stand together share one probability, which counts once for each name.
+
+    left_out : labels that the answer does not speak of
     """
     total: dict[str, float] = {}
     counted: set[str] = set()
     best: dict[str, tuple[float, str | None]] = {}
+    together = together_in(ranking)
     for label, probability in ranking.items():
+        if label in left_out:
+            continue
         name = names.name(label)
         effect = label[0] if label[0] in WORDS else "unknown" if name is None else name[0]
         at = None if label[0] in WORDS else names.place_of(label)
@@ -75,6 +82,20 @@ def ranking_of(ranking: Mapping[Label, float], names: Names, together: Sequence[
             best[effect] = probability, at
     order = sorted(total, key=lambda effect: -total[effect])
     return [{"effect": effect, "at": best[effect][1], "probability": total[effect]} for effect in order]
+
+
+def together_in(ranking: Mapping[Label, float]) -> list[Label]:
+    """The two causes that share one probability, if any: what the probabilities add up to above 1 is theirs."""
+    surplus = sum(ranking.values()) - 1.0
+    if surplus < ROUNDING:
+        return []
+    found = [label for label, chance in ranking.items() if abs(chance - surplus) < ROUNDING and label[0] not in WORDS]
+    return found if len(found) > 1 else []
+
+
+def _companions(finding: Finding, names: Names) -> list[Label]:
+    """Claimed causes without a name, of which an answer that claims another one says nothing: their probability is that of the other."""
+    return [item.label for item in finding.claimed if names.name(item.label) is None] if len(finding.claimed) > 1 else []
 
 
 def _named(finding: Finding, names: Names) -> list[tuple[Name, Claimed]]:
@@ -124,7 +145,8 @@ def _chance(name: Name, chances: Mapping[tuple[str, str | None], float]) -> floa
 def _where(finding: Finding, names: Names, claimed: list[Name]) -> list[dict[str, Any]]:
     """Places of the claim first, then the located ones, then those of what was ranked; these before where nothing was located."""
     by_rank: dict[str, float] = {}
-    together, seen = [item.label for item in finding.claimed], []
+    seen: list[Label] = []
+    together = together_in(finding.ranking)
     for label, probability in finding.ranking.items():
         if label[0] not in WORDS:
             place = names.place_of(label)

@@ -184,6 +184,23 @@ def test_of_two_causes_the_stronger_decides_whether_there_is_a_name(shares_of: t
     assert claimed(answer) == ([("friction_motor", "motor")] if said == "effect" else [])
 
 
+def test_two_causes_that_share_a_probability_count_once_under_one_name() -> None:
+    without = [label for label in (("stiffness_variation", "gear"), ("sensor_offset", "torque_sensor")) if DRIVE.name(label) is None]
+    assert len(without) == 2
+    ranking = {("unknown", ""): 0.88, **dict.fromkeys(without, 0.12), ("none", ""): 0.0}
+    listed = {item["effect"]: item["probability"] for item in answer_of("c", finding("unknown", ranking=ranking), DRIVE)["ranking"]}
+    assert listed["unknown"] == pytest.approx(1.0)
+
+
+def test_a_companion_without_a_name_is_no_sign_of_an_unknown_cause() -> None:
+    named, other = ("friction", "motor"), ("sensor_offset", "torque_sensor")
+    ranking = {named: 0.9, other: 0.9, ("unknown", ""): 0.1}
+    answer = answer_of("c", finding("effect", named, other, ranking=ranking), DRIVE)
+    assert claimed(answer) == [("friction_motor", "motor")]
+    assert {item["effect"]: item["probability"] for item in answer["ranking"]} == pytest.approx({"friction_motor": 0.9, "unknown": 0.1})
+    assert answer["effects"][0]["probability"] == pytest.approx(0.9)
+
+
 def test_laws_of_one_name_are_added_up_in_the_ranking() -> None:
     ranking = {("viscous_drag", "load"): 0.3, ("parameter", "load_viscous"): 0.25, ("parameter", "motor_viscous"): 0.1, ("none", ""): 0.35}
     answer = answer_of("drive-c01", finding("parameter", ("viscous_drag", "load"), ranking=ranking), DRIVE)
