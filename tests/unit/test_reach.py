@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -100,13 +102,15 @@ def test_a_fit_with_beliefs_ends_where_one_without_does(simulator: Simulator, ba
 def test_a_look_that_leaves_out_what_does_not_show_finds_what_one_with_all_runs_finds(
     simulator: Simulator, base: Fitted, effect: hm.Effect, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    start = Hypothesis(base.hypothesis.factors, (Added(effect, "rotor_2", "extra"),))
+    name = next(name for name, _, _ in effect.fields() if getattr(effect, name) > 0.0)
+    twice = replace(effect, **{name: 2.0 * getattr(effect, name)})
+    starts = [Hypothesis(base.hypothesis.factors, (Added(item, "rotor_2", "extra"),)) for item in (effect, twice)]
 
     def looked() -> tuple[screening.Look | None, int]:
         alone = Simulator(simulator.trials, simulator.step, simulator.every)
         screen = screen_from(alone, base)
         before = alone.runs
-        return screen.look([start]), alone.runs - before
+        return screen.look(starts), alone.runs - before
 
     some, of_some = looked()
     monkeypatch.setattr(screening, "hardly_reached", lambda *_: frozenset())
