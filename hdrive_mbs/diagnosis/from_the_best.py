@@ -9,6 +9,7 @@ from hdrive_mbs.diagnosis.choosing import beyond
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.ground import as_known
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis, searched_fields
+from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect
 from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, Found, Task, further, rivalling
 from hdrive_mbs.effects.effect import Effect
@@ -22,6 +23,8 @@ BENT = 3.0
 """Prior standard deviations of a parameter from which on it is suspected whatever a look shows."""
 RIVALS = 2
 """Labels whose best laws are fitted to the end."""
+ALIKE = 1.0
+"""Log-likelihood within which a law has come out as good as one that acts exactly as it does."""
 AGAIN = 2
 """Of the best laws that are fitted again from the data sheet's values."""
 
@@ -75,6 +78,29 @@ def other_laws(found: Sequence[Found], base: Fitted, everything: Sequence[Suspec
             effect = _with_values(last.effect, values)
             made.setdefault(effect, Hypothesis(start.factors, (*before, Added(effect, last.at, last.name)), start.loose))
         tasks += [(suspect, _from(best, base, start)) for start in list(made.values())[:STARTS]]
+    return tasks
+
+
+def twins(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect], simulator: Simulator) -> list[tuple[Suspect, Task]]:
+    """Laws under other names that act exactly as the best one does, from what it found, as far as they have not come out as good."""
+    if not found or not found[0].fitted.hypothesis.added:
+        return []
+    best = found[0].fitted
+    cause = best.hypothesis.rescaled(best.z)[0].added[-1]
+    if type(cause.effect).twins is Effect.twins:
+        return []
+    network = simulator.trials[0].scene.network()
+    senses = {body.name: body.sense for body in network.bodies}
+    tasks = []
+    for twin in cause.effect.twins(senses.get(network.places.get(cause.at, cause.at), 1)):
+        for suspect in everything:
+            if suspect.law != type(twin).__name__ or suspect.all[0].added[-1].at != cause.at:
+                continue
+            if any(item.suspect.label == suspect.label and item.fitted.cost < best.cost + ALIKE for item in found):
+                continue
+            old = suspect.all[0]
+            added = (*old.added[:-1], Added(twin, cause.at, old.added[-1].name))
+            tasks.append((suspect, _from(best, base, Hypothesis(old.factors, added, old.loose))))
     return tasks
 
 

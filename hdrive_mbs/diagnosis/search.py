@@ -13,7 +13,7 @@ from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import SEEN, beyond, enough, leaves, not_begun, passed_over, picked, spread_out, worth
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.force_orders import StandsOut
-from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, restarts, unfinished
+from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, restarts, twins, unfinished
 from hdrive_mbs.diagnosis.ground import held, is_bent, screen_from
 from hdrive_mbs.diagnosis.hops import settled
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
@@ -149,6 +149,7 @@ def search(
         found = cheapest([*found, *work.fitted(unfinished(found), "fitting the best")])
     if how.laws > 1 and base.chi_fit < NEAR:
         found = cheapest([*found, *work.fitted(bent(base, everything), "fitting parameters that the nominal model has bent")])
+    found = cheapest([*found, *work.fitted(twins(found, base, everything, simulator), "trying laws that act alike")])
     return _ranked(found, base, looks)
 
 

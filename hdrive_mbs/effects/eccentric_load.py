@@ -10,6 +10,7 @@ import numpy as np
 
 from hdrive_mbs.effects.effect import Effect, add_body_torque, moving_body
 from hdrive_mbs.effects.places import turning_bodies
+from hdrive_mbs.effects.torque_ripple import TorqueRipple
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
@@ -51,6 +52,19 @@ class EccentricLoad(Effect):
     def places(cls, network: Network) -> tuple[str, ...]:
         """Bodies that only turn: a station of a rotor line would be shaken by the mass as well."""
         return tuple(place for place in turning_bodies(network) if place not in network.positions)
+
+    def twins(self, sense: int) -> tuple[TorqueRipple, ...]:
+        """Where a motor sits, a ripple once a turn gives the same torque."""
+        turned = np.pi if sense > 0 else 0.0
+        return (
+            TorqueRipple(
+                amplitude=self.mass * self.gravity * self.radius,
+                order=1.0,
+                phase=self.start_angle + turned,
+                second_amplitude=self.second_torque,
+                second_phase=self.second_phase + turned,
+            ),
+        )
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         body = moving_body(self, draft, place)

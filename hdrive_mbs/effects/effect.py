@@ -89,6 +89,16 @@ class Effect(Described, ABC):
         """
         return ()
 
+    def twins(self, sense: int) -> tuple[Effect, ...]:
+        """Effects of other classes that act exactly as it does with its values, so that no record can tell them apart: a search that
+        ends with one of them names the others too.
+
+        sense : in which the body at its place turns forward, 1 or -1
+
+        None by default.
+        """
+        return ()
+
     @abstractmethod
     def apply(self, draft: Draft, place: str, name: str) -> None:
         """Add the effect to the network.  ``name`` is unique in the scene and prefixes channels.

@@ -45,6 +45,23 @@ class TorqueRipple(Effect):
     starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"order": MOTOR_ORDERS, "relative": (0.0, 1e-4)}
     # both: c > 0 turns with the phase of A and hides it where there is no c, and of c alone A shows no phase
 
+    def twins(self, sense: int) -> tuple[Effect, ...]:
+        """Once a turn and without a part that grows with the torque, it is the weight of an eccentric mass."""
+        from hdrive_mbs.effects.eccentric_load import EccentricLoad  # which has this one as its twin
+
+        if self.order != 1.0 or self.relative != 0.0:
+            return ()
+        turned = np.pi if sense > 0 else 0.0
+        whole = EccentricLoad(mass=1.0, radius=EccentricLoad.starts["radius"][0])
+        return (
+            whole.replacing(
+                mass=self.amplitude / (whole.gravity * whole.radius),
+                start_angle=self.phase + turned,
+                second_torque=self.second_amplitude,
+                second_phase=self.second_phase + turned,
+            ),
+        )
+
     def apply(self, draft: Draft, place: str, name: str) -> None:
         body = moving_body(self, draft, place)
         motor = draft.motor_torque(place, "TorqueRipple.relative") if self.relative > 0.0 else None
