@@ -83,7 +83,7 @@ def other_laws(found: Sequence[Found], base: Fitted, everything: Sequence[Suspec
 
 def twins(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect], simulator: Simulator) -> list[tuple[Suspect, Task]]:
     """Laws under other names that act exactly as the best one does, from what it found, as far as they have not come out as good."""
-    if not found or not found[0].fitted.hypothesis.added:
+    if not found or found[0].suspect.law == PARAMETER or not found[0].fitted.hypothesis.added:
         return []
     best = found[0].fitted
     cause = best.hypothesis.rescaled(best.z)[0].added[-1]
