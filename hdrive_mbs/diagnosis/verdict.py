@@ -61,7 +61,10 @@ leave something that a second cause can nibble at: of the 60 cases of our own ro
 LITTLE, MOST = 1.1, 0.75
 """Mean square left by the first cause up to which a second one has to take MOST of its logarithm: more beside a strong cause, of which
 a law that is nearly right leaves more (``nearly_right``).  A mass that swings on a support took nearly all of the 1.05 that a bow left,
-and a keyway, which was not there, 0.57 (c03 of our own thirteenth rotor set, opened)."""
+and a keyway, which was not there, 0.57 (c03 of our own thirteenth rotor set, opened).
+A second cause of the first one's family needs COMPARABLE besides: laws of one phenomenon at two ends of a stiff shaft are one richer law
+of it.  Friction of a motor left 1.15 of a gap of 100,000, and friction of the wave generator beside it 1.004 for 0.012 of its log odds
+(c01 of our own eleventh drive set, opened): it rests on that case."""
 TEMPERATURE = 3.0
 """By which log odds beyond those that a claim needs are divided before they become probabilities: laws are never quite right."""
 BELOW = 9.0
@@ -181,8 +184,14 @@ def _needed(first: Found, pair: Found, null_misfit: float) -> bool:
     if gain <= SECOND or before <= NOISE or after >= before:
         return False
     if before <= max(LITTLE, nearly_right(null_misfit)):
-        return takes_most(before, after)
+        return takes_most(before, after) and (gain > COMPARABLE * first.log_odds or not _of_one_family(pair))
     return math.log(max(after, 1.0)) < (1.0 - MORE) * math.log(before) or gain > COMPARABLE * first.log_odds
+
+
+def _of_one_family(pair: Found) -> bool:
+    """Whether the two causes of a pair are laws of one phenomenon at two places."""
+    families = [item.label[0] for item in pair.fitted.hypothesis.added]
+    return len(families) > 1 and families[-1] in families[:-1]
 
 
 def takes_most(before: float, after: float) -> bool:

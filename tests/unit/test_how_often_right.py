@@ -96,4 +96,5 @@ def test_the_figures_of_the_verdict_are_those_of_the_program() -> None:
         f"... of a rest of at most {verdict.LITTLE:.2f} (more beside a gap of more than {verdict.LITTLE ** (1.0 / nearly.SMALL):.0f}:"
         f" its power {nearly.SMALL}, {nearly.nearly_right(1000.0):.2f} at 1000)"
     )
-    assert rows[little] == f"{verdict.SECOND:g}, and {verdict.MOST:.0%} of the logarithm of the rest".replace("%", " %")
+    most = f"{verdict.MOST:.0%} of the logarithm of the rest, and of one family with the first {verdict.COMPARABLE:.0%} of its log odds"
+    assert rows[little] == f"{verdict.SECOND:g}, and {most}".replace("%", " %")

@@ -64,6 +64,24 @@ def test_of_the_little_that_a_first_cause_leaves_a_second_one_takes_most(
     assert claim.fit is (two if both else one)
 
 
+@pytest.mark.parametrize(
+    ("first", "after", "odds", "both"),
+    [
+        (1.15, 1.004, 5060.0, False),  # what one richer law of the drag may take
+        (1.15, 1.004, 5600.0, True),  # more than a tenth of the first one's log odds
+        (1.6, 1.004, 5060.0, True),  # more than a law that is nearly right leaves
+    ],
+)
+def test_a_second_cause_of_the_first_ones_family_is_first_of_all_a_better_law_of_it(
+    fitted: tuple[Simulator, Fitted], first: float, after: float, odds: float, both: bool
+) -> None:
+    other = Added(hm.ViscousDrag(coefficient=0.01), "motor", "drag_2")
+    one = found(fitted[1], (DRAG,), first, 5000.0)
+    two = found(fitted[1], (DRAG, other), after, odds)
+    assert judge(400.0, [one], [two]).fit is (two if both else one)
+    assert judge(400.0, [one], [found(fitted[1], (DRAG, RIPPLE), after, odds)]).fit is not one
+
+
 @pytest.mark.parametrize(("more", "alike"), [(0.0002, True), (-0.001, True), (0.0003, False)])
 def test_single_causes_that_leave_alike_are_not_told_apart_by_their_odds(
     fitted: tuple[Simulator, Fitted], more: float, alike: bool
