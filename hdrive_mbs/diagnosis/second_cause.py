@@ -13,6 +13,7 @@ from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import enough
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.pairs import alone, contenders, joined, moved, swapped
+from hdrive_mbs.diagnosis.recast import recast
 from hdrive_mbs.diagnosis.search import Depth, Search, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.stages import Report, under
@@ -114,6 +115,8 @@ def second_cause(
         for item in others:
             more = search(team, coarse, item.fitted, groups, tried, depth=SHALLOW, report=partial(under, said, "first cause again"))
             found = contenders(team, coarse, [*found, *more.found], first)
+    if left(found[0].fitted) > enough(null, LEFT) and not team.deadline.passed("other causes at the places of the pair"):
+        found = contenders(team, coarse, [*found, *recast(team, coarse, found, everything)], first)
     elsewhere = [] if team.deadline.passed("causes of the pair at other places") else moved(team, coarse, found, tried)
     pairs = contenders(team, coarse, [*found, *elsewhere], first)
     if pairs[0].suspect.label not in {item.suspect.label for item in others}:

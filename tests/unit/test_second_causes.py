@@ -129,6 +129,7 @@ def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_anything
     named("search", Search(base, (two,)))
     named("swapped", [])
     named("alone", [])
+    named("recast", [])
     named("moved", [])
     named("contenders", (two,))
     with Team(1) as team:
@@ -137,6 +138,7 @@ def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_anything
         )
     assert ("search" in asked) is (exchanged is not None)
     assert ("swapped" in asked) is (exchanged is True)
+    assert ("recast" in asked) is (second == 1.3)  # only where the pair leaves much
     assert pairs == ((two,) if exchanged else ())
     assert (search is None) is (exchanged is None)
 
