@@ -109,8 +109,16 @@ def moved(team: Team, simulator: Simulator, pairs: Sequence[Found], tried: Seque
                 start = z if effect is mine.effect else hypothesis.start(full.nominal_part(z))
                 tasks.append(Task(hypothesis, start, None, FIRST, FINE))
                 whose.append(Suspect(added.label, place.kind.__name__, (hypothesis,), (hypothesis,)) if is_second else best.suspect)
+    return gone_on(team, simulator, those_that_ran(whose, team.map(run_task, simulator, tasks)), best)
+
+
+def gone_on(team: Team, simulator: Simulator, some: Sequence[Found], best: Found) -> list[Found]:
+    """Pairs after their first steps, one for each two causes; those that came nearest take more of them.
+
+    best : pair so far, with which they have to catch up
+    """
     begun: dict[frozenset[object], Found] = {}
-    for item in sorted(those_that_ran(whose, team.map(run_task, simulator, tasks)), key=lambda item: item.fitted.cost):
+    for item in sorted(some, key=lambda item: item.fitted.cost):
         begun.setdefault(_causes(item), item)
     open_ = [item for item in begun.values() if not (item.fitted.converged or is_hopeless(item.fitted.chi_fit, best.fitted.chi_fit))]
     going = open_[:GOING]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
-from hdrive_mbs.diagnosis.pairs import TOGETHER
+from hdrive_mbs.diagnosis.pairs import gone_on
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, renamed, simplest
-from hdrive_mbs.diagnosis.tasks import FINE, Found, Task, rivalling, run_task, those_that_ran
+from hdrive_mbs.diagnosis.tasks import FINE, FIRST, Found, Task, run_task, those_that_ran
 from hdrive_mbs.diagnosis.team import Team
 
 
@@ -31,7 +31,7 @@ def recast(team: Team, simulator: Simulator, pairs: Sequence[Found], everything:
                 continue
             added = renamed(suspect.first[0].added[-1], rest)
             hypothesis = Hypothesis(full.factors, (*full.added[:k], added, *full.added[k + 1 :]), full.loose)
-            tasks.append(Task(hypothesis, hypothesis.start(full.nominal_part(z)), None, TOGETHER, FINE, beat=rivalling(best.fitted)))
+            tasks.append(Task(hypothesis, hypothesis.start(full.nominal_part(z)), None, FIRST, FINE))
             is_second = k == len(full.added) - 1 and best.suspect.law != PARAMETER
             whose.append(Suspect(suspect.label, suspect.law, (hypothesis,), (hypothesis,)) if is_second else best.suspect)
-    return those_that_ran(whose, team.map(run_task, simulator, tasks))
+    return gone_on(team, simulator, those_that_ran(whose, team.map(run_task, simulator, tasks)), best)
