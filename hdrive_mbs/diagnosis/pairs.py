@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
@@ -94,31 +94,36 @@ def moved(team: Team, simulator: Simulator, pairs: Sequence[Found], tried: Seque
 
     pairs : at least one, fitted to the end;  tried : effects and places that are admitted
     """
+
+    def elsewhere(full: Hypothesis, k: int) -> Iterator[Added]:
+        mine = full.added[k]
+        for place in tried:
+            if place.kind is type(mine.effect):
+                yield from (Added(effect, place.at, mine.name) for effect in dict.fromkeys((mine.effect, _plain(mine.effect))))
+
+    return replaced(team, simulator, pairs, elsewhere)
+
+
+def replaced(team: Team, simulator: Simulator, pairs: Sequence[Found], others: Callable[[Hypothesis, int], Iterable[Added]]) -> list[Found]:
+    """The best pair with one of its causes replaced, but where another of the pairs has both: first steps, and more of the nearest.
+
+    pairs : at least one, fitted to the end;  others : of a hypothesis and the number of a cause in it, what is tried in its place
+    """
     best = min(pairs, key=lambda item: item.fitted.cost)
     full, z = best.fitted.hypothesis.rescaled(best.fitted.z)
     known = {_causes(item) for item in pairs}
     tasks, whose = [], []
-    for k, mine in enumerate(full.added):
-        for place in tried:
-            for effect in dict.fromkeys((mine.effect, _plain(mine.effect))):
-                added = Added(effect, place.at, mine.name)
-                hypothesis = Hypothesis(full.factors, (*full.added[:k], added, *full.added[k + 1 :]), full.loose)
-                if place.kind is not type(effect) or _causes_of(hypothesis) in known or len(hypothesis.labels) < len(full.added):
-                    continue
-                is_second = k == len(full.added) - 1 and best.suspect.law != PARAMETER
-                start = z if effect is mine.effect else hypothesis.start(full.nominal_part(z))
-                tasks.append(Task(hypothesis, start, None, FIRST, FINE))
-                whose.append(Suspect(added.label, place.kind.__name__, (hypothesis,), (hypothesis,)) if is_second else best.suspect)
-    return gone_on(team, simulator, those_that_ran(whose, team.map(run_task, simulator, tasks)), best)
-
-
-def gone_on(team: Team, simulator: Simulator, some: Sequence[Found], best: Found) -> list[Found]:
-    """Pairs after their first steps, one for each two causes; those that came nearest take more of them.
-
-    best : pair so far, with which they have to catch up
-    """
+    for k in range(len(full.added)):
+        is_second = k == len(full.added) - 1 and best.suspect.law != PARAMETER
+        for added in others(full, k):
+            hypothesis = Hypothesis(full.factors, (*full.added[:k], added, *full.added[k + 1 :]), full.loose)
+            if _causes_of(hypothesis) in known or len(hypothesis.labels) < len(full.added):
+                continue
+            tasks.append(Task(hypothesis, hypothesis.start(full.nominal_part(z)), None, FIRST, FINE))
+            law = type(added.effect).__name__
+            whose.append(Suspect(added.label, law, (hypothesis,), (hypothesis,)) if is_second else best.suspect)
     begun: dict[frozenset[object], Found] = {}
-    for item in sorted(some, key=lambda item: item.fitted.cost):
+    for item in sorted(those_that_ran(whose, team.map(run_task, simulator, tasks)), key=lambda item: item.fitted.cost):
         begun.setdefault(_causes(item), item)
     open_ = [item for item in begun.values() if not (item.fitted.converged or is_hopeless(item.fitted.chi_fit, best.fitted.chi_fit))]
     going = open_[:GOING]

@@ -15,9 +15,13 @@ import numpy as np
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
-from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.hypothesis import FloatArray, Hypothesis
+from hdrive_mbs.diagnosis.fit import Fitted, fit
+from hdrive_mbs.diagnosis.hypothesis import Added, FloatArray, Hypothesis
 from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.suspects import Suspect
+from hdrive_mbs.diagnosis.tasks import Found
+from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.records.measurement import Measurement
 from hdrive_mbs.records.record import Record
@@ -175,3 +179,10 @@ def standing(hypothesis: Hypothesis, curvature: FloatArray) -> Fitted:
         typical=1.0,
         misfit_held=0.0,
     )
+
+
+def fitted_pair(simulator: Simulator, factors: Sequence[Factor], first: Added, second: Added) -> Found:
+    """Two causes, the second found last, fitted in a few steps."""
+    hypothesis = Hypothesis(tuple(factors), (first, second))
+    suspect = Suspect(second.label, type(second.effect).__name__, (hypothesis,), (hypothesis,))
+    return Found(suspect, fit(simulator, hypothesis, hypothesis.start(), steps=12))

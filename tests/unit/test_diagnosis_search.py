@@ -39,7 +39,7 @@ from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.verdict import judge
 from hdrive_mbs.errors import AnalysisError
 from models import rotor_bench
-from tests.unit.diagnosis_cases import bench, quiet, records
+from tests.unit.diagnosis_cases import bench, fitted_pair, quiet, records
 
 BENCH = bench()
 NOT_LOOKED = Located(places=(), doubt="", forces=(), turned=())
@@ -838,9 +838,7 @@ def test_a_cause_of_a_pair_is_tried_at_its_other_places() -> None:
         Added(hm.CoulombStribeckFriction(coulomb=2.5), "load", "friction"),  # 50 times the motor's, as the gear reduces 50 : 1
     ]
     for first, second in (found, found[::-1]):
-        hypothesis = Hypothesis(factors, (first, second))
-        wrong = Suspect(second.label, type(second.effect).__name__, (hypothesis,), (hypothesis,))
-        pair = Found(wrong, fit(both, hypothesis, hypothesis.start(), steps=12))
+        pair = fitted_pair(both, factors, first, second)
         with Team(1) as team:
             others = moved(team, both, [pair], tried)
         best = min(others, key=lambda item: item.fitted.cost)

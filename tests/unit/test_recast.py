@@ -5,15 +5,13 @@ from __future__ import annotations
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.diagnose import factors_of
-from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.pairs import contenders
 from hdrive_mbs.diagnosis.recast import recast
 from hdrive_mbs.diagnosis.simulator import Simulator
-from hdrive_mbs.diagnosis.suspects import Suspect, suspects
-from hdrive_mbs.diagnosis.tasks import Found
+from hdrive_mbs.diagnosis.suspects import suspects
 from hdrive_mbs.diagnosis.team import Team
-from tests.unit.diagnosis_cases import bench, records
+from tests.unit.diagnosis_cases import bench, fitted_pair, records
 
 BENCH = bench()
 
@@ -29,9 +27,7 @@ def test_drag_that_was_taken_for_friction_of_the_same_load_is_found_beside_the_o
         Added(hm.CoulombStribeckFriction(coulomb=0.05), "motor", "friction_2"),
     ]
     for first, second in (found, found[::-1]):
-        hypothesis = Hypothesis(factors, (first, second))
-        wrong = Suspect(second.label, type(second.effect).__name__, (hypothesis,), (hypothesis,))
-        pair = Found(wrong, fit(both, hypothesis, hypothesis.start(), steps=12))
+        pair = fitted_pair(both, factors, first, second)
         with Team(1) as team:
             others = recast(team, both, [pair], everything)
             best, *_ = contenders(team, both, [pair, *others], pair)
