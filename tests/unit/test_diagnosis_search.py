@@ -415,6 +415,27 @@ def test_of_many_starts_with_a_phase_those_that_promise_most_are_looked_at_whole
     assert runs[0] < whole
 
 
+def test_starts_that_promise_more_than_they_bring_hide_no_other_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three orders beyond all that is there to gain come first, and the right one is looked at as it promises more than they bring."""
+    both = Simulator(BENCH.trials(records((hm.KinematicError(amplitude=2e-4, order=2.0, phase=0.4), "gear"))[0]), 2.5e-4, 4)
+    factors = factors_of(BENCH)
+    orders = (1.0, 3.0, 4.0, 5.0, 2.0, 6.0, 7.0, 8.0)
+    starts = [Hypothesis(factors, (Added(hm.KinematicError(amplitude=1e-5, order=n), "gear", "error"),)) for n in orders]
+    base = fit(both, Hypothesis(factors), np.zeros(len(factors)), steps=25)
+    screen, honest = screen_from(both, base), Screen._promise
+
+    def promise(self: Screen, group: Starts, k: int, along: Sequence[int]) -> float:
+        kept = honest(self, group, k, along)
+        return base.cost + kept if group.starts[k].added[-1].effect.order > 5.0 else kept
+
+    monkeypatch.setattr(Screen, "_promise", promise)
+    look, own = screen.look(starts), screen.look([starts[orders.index(2.0)]])
+    assert look is not None
+    assert own is not None
+    assert look.start is own.start
+    assert look.cost == pytest.approx(own.cost, rel=1e-9)
+
+
 def test_a_start_that_changes_more_than_the_gap_begins_at_a_part_of_its_size(simulator: Simulator) -> None:
     """Far above what is there a step leads nowhere; a start that the gap has room for stays as it is."""
     factors = factors_of(BENCH)
