@@ -29,10 +29,11 @@ from hdrive_mbs.diagnosis.located import Located, located
 from hdrive_mbs.diagnosis.normal_equations import STRETCH, normal_equations
 from hdrive_mbs.diagnosis.pairs import alone, contenders, moved
 from hdrive_mbs.diagnosis.result import Cause, Place
-from hdrive_mbs.diagnosis.screening import FAINTEST, Look, Screen, Starts
+from hdrive_mbs.diagnosis.screening import FAINTEST, Look, Screen
 from hdrive_mbs.diagnosis.search import ENOUGH, Depth, Search, _Work, fit_nominal, is_inexact, search
 from hdrive_mbs.diagnosis.second_cause import slight, wants_second
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.starts import Starts
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, simplest, suspects
 from hdrive_mbs.diagnosis.tasks import FIRST, Found, Task, proven, run_task, scored
 from hdrive_mbs.diagnosis.team import Team

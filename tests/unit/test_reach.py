@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 import hdrive_mbs as hm
-from hdrive_mbs.diagnosis import screening
 from hdrive_mbs.diagnosis.differences import believed, jacobian, unseen_in
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.ground import screen_from
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.reach import PART, SEEN, SINGLY, deviations, hardly_reached, is_unseen, missed
+from hdrive_mbs.diagnosis.screening import Look
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.starts import Starts
 from models import rotor_bench
 from tests.unit.rotor_bench_records import bench, compiled, factors, recorded
 
@@ -106,14 +107,14 @@ def test_a_look_that_leaves_out_what_does_not_show_finds_what_one_with_all_runs_
     twice = replace(effect, **{name: 2.0 * getattr(effect, name)})
     starts = [Hypothesis(base.hypothesis.factors, (Added(item, "rotor_2", "extra"),)) for item in (effect, twice)]
 
-    def looked() -> tuple[screening.Look | None, int]:
+    def looked() -> tuple[Look | None, int]:
         alone = Simulator(simulator.trials, simulator.step, simulator.every)
         screen = screen_from(alone, base)
         before = alone.runs
         return screen.look(starts), alone.runs - before
 
     some, of_some = looked()
-    monkeypatch.setattr(screening, "hardly_reached", lambda *_: frozenset())
+    monkeypatch.setattr("hdrive_mbs.diagnosis.starts.hardly_reached", lambda *_: frozenset())
     every, of_all = looked()
     assert some is not None
     assert every is not None
@@ -161,14 +162,14 @@ def test_of_looks_whose_left_out_trials_fit_worse_than_reckoned_the_next_is_take
     screen = screen_from(simulator, base)
     start = Hypothesis(base.hypothesis.factors, (Added(hm.RotorUnbalance(unbalance=1e-6), "rotor_2", "extra"),))
     promised, real = [10.0, 11.0, 20.0], {10.0: 50.0, 11.0: 12.0, 20.0: 20.0}
-    group = screening.Starts([start], [start.start(base.z)], base)
-    looks = [(screening.Look(start, start.start(base.z), cost, base.residuals, start), group) for cost in promised]
+    group = Starts([start], [start.start(base.z)], base)
+    looks = [(Look(start, start.start(base.z), cost, base.residuals, start), group) for cost in promised]
     asked: list[float] = []
 
-    def whole(look: screening.Look, group: screening.Starts) -> screening.Look | None:
+    def whole(look: Look, group: Starts) -> Look | None:
         asked.append(look.cost)
         cost = real[look.cost]
-        return None if np.isnan(cost) else screening.Look(look.hypothesis, look.z, cost, look.residuals, look.start)
+        return None if np.isnan(cost) else Look(look.hypothesis, look.z, cost, look.residuals, look.start)
 
     monkeypatch.setattr(screen, "_whole", whole)
     best = screen._best_whole(looks)
