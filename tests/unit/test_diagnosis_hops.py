@@ -102,3 +102,21 @@ def test_what_a_straight_bowl_promises_is_what_a_hop_gains() -> None:
     aside = Fitted(**{**vars(there), "z": moved, "residuals": waved.residuals(there.hypothesis, [moved])[0]})
     _, promised = hops._bowl(waved, aside)  # type: ignore[arg-type]
     assert promised == pytest.approx(0.5 * 3.0**2, rel=0.02)
+
+
+@pytest.mark.parametrize(("kept", "parts"), [(0.9, [1.0]), (0.2, [1.0, 0.4])])
+def test_a_part_of_a_hop_is_tried_where_the_whole_keeps_little_of_its_promise(
+    monkeypatch: pytest.MonkeyPatch, kept: float, parts: list[float]
+) -> None:
+    waved = Waved(0.0, 1.0)
+    there = begun(waved, 0.8)
+    begun_at: list[float] = []
+
+    def ended(simulator: Waved, hypothesis: Hypothesis, start: FloatArray, **_: object) -> Fitted:
+        begun_at.append(float(start[0] - there.z[0]))
+        return Fitted(**{**vars(there), "cost": there.cost - kept * 10.0})
+
+    monkeypatch.setattr(hops, "_bowl", lambda *_: (np.array([0.1]), 10.0))
+    monkeypatch.setattr(hops, "fit", ended)
+    settled(waved, there, 1)  # type: ignore[arg-type]
+    np.testing.assert_allclose(begun_at, [0.1 * part for part in parts], rtol=1e-9)
