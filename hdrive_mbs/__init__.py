@@ -128,6 +128,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.film_backlash": ("FilmBacklash",),
     "effects.flexible_inertia": ("FlexibleInertia",),
     "effects.harmonic_kinematic_error": ("HarmonicKinematicError",),
+    "effects.beating_kinematic_error": ("BeatingKinematicError",),
     "effects.hidden_mode": ("HiddenMode",),
     "effects.iwan_hysteresis": ("IwanHysteresis",),
     "effects.lost_motion": ("LostMotion",),

@@ -112,6 +112,7 @@ from hdrive_mbs.effects.bearing_damping_change import BearingDampingChange as Be
 from hdrive_mbs.effects.bearing_effect import BearingEffect as BearingEffect
 from hdrive_mbs.effects.bearing_hardening import BearingHardening as BearingHardening
 from hdrive_mbs.effects.bearing_stiffness_change import BearingStiffnessChange as BearingStiffnessChange
+from hdrive_mbs.effects.beating_kinematic_error import BeatingKinematicError as BeatingKinematicError
 from hdrive_mbs.effects.bouc_wen_hysteresis import BoucWenHysteresis as BoucWenHysteresis
 from hdrive_mbs.effects.breathing_crack import BreathingCrack as BreathingCrack
 from hdrive_mbs.effects.coated_rub import CoatedRub as CoatedRub

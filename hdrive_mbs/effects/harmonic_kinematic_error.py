@@ -39,7 +39,7 @@ class HarmonicKinematicError(KinematicError):
         ("third_amplitude", "third_phase"),
     )
     starts: ClassVar[Mapping[str, tuple[float | str, ...]]] = {
-        "order": (1.0, 2.0, 3.0, 4.0),
+        "order": (1.0, 2.0, 3.0, 4.0, 6.0),
         "follows": ("wave_generator", "flexspline"),
     }
 

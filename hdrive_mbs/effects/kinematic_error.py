@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -11,6 +11,7 @@ import numpy as np
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
+from hdrive_mbs.network.connection_draft import ConnectionDraft
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.elements import KinematicTerm
 from hdrive_mbs.quantities import option, parameter
@@ -58,9 +59,13 @@ class KinematicError(Effect):
         """e [rad] at a true angle [rad] of the flange."""
         return self.amplitude * np.sin(self.order * angle + self.phase) + self.offset
 
+    def law(self, gear: ConnectionDraft) -> Callable[[Value], Value]:
+        """e [rad] of a true angle [rad] of the flange, in a gear."""
+        return self.error
+
     def apply(self, draft: Draft, place: str, name: str) -> None:
         gear = draft.connection(place, type(self).__name__, flanges=(self.follows, "circular_spline"))
         flange, ring = draft.body(gear.bodies[self.follows]), draft.body(gear.bodies["circular_spline"])
-        term = KinematicTerm({flange.name: float(flange.sense), ring.name: -float(ring.sense)}, self.error)
+        term = KinematicTerm({flange.name: float(flange.sense), ring.name: -float(ring.sense)}, self.law(gear))
         gear.terms.append(term)
         draft.add_channel(f"{name}.error", "rad", f"kinematic error of {name}, positive when the output runs ahead", term.value)

@@ -32,6 +32,7 @@ from hdrive_mbs.components.shaft import Shaft
 from hdrive_mbs.conversions import arcmin, rpm
 from hdrive_mbs.diagnosis.candidates import known_effects
 from hdrive_mbs.effects.actuator_lag import ActuatorLag
+from hdrive_mbs.effects.beating_kinematic_error import BeatingKinematicError
 from hdrive_mbs.effects.bouc_wen_hysteresis import BoucWenHysteresis
 from hdrive_mbs.effects.cogging import Cogging
 from hdrive_mbs.effects.coulomb_stribeck_friction import CoulombStribeckFriction
@@ -216,6 +217,11 @@ EXAMPLES = {
             HarmonicKinematicError(amplitude=arcmin(1.0), second_amplitude=arcmin(0.5), third_amplitude=arcmin(0.2), third_phase=1.0),
             "gear",
             ("amplitude", "second_amplitude", "third_amplitude"),
+        ),
+        Example(
+            BeatingKinematicError(amplitude=arcmin(1.0), second_amplitude=arcmin(0.5), modulation=0.4, modulation_phase=0.5),
+            "gear",
+            ("amplitude", "second_amplitude"),
         ),
         Example(ActuatorLag(time_constant=5e-3), "motor", ("time_constant",)),
         Example(SupplySag(sag=0.3, torque_limit=15.0), "motor", ("sag",)),

@@ -334,6 +334,33 @@ def test_a_kinematic_error_with_harmonics_is_the_sum_of_three() -> None:
             assert first[name] == pytest.approx(second[name], rel=1e-12)
 
 
+@pytest.mark.parametrize("sense", ["same", "opposite"])
+def test_a_beating_kinematic_error_is_the_sum_of_its_orders_and_their_side_bands(sense: str) -> None:
+    """(1 + m sin(a/u + q)) sin(n a + p) = sin(n a + p) + m/2 [cos((n - 1/u) a + p - q) - cos((n + 1/u) a + p + q)]."""
+    plain = drive().replacing({"gear.output_sense": sense})
+    ratio = abs(plain.parts["gear"].signed_ratio)
+    phase, shift, share = 0.3, 0.8, 0.2
+    beating = hm.BeatingKinematicError(amplitude=1e-4, order=2.0, phase=phase, modulation=share, modulation_phase=shift)
+    apart = plain
+    for amplitude, order, own in (
+        (1e-4, 2.0, phase),
+        (0.5 * share * 1e-4, 2.0 - 1.0 / ratio, phase - shift + np.pi / 2.0),
+        (0.5 * share * 1e-4, 2.0 + 1.0 / ratio, phase + shift - np.pi / 2.0),
+    ):
+        apart = apart.with_effect(hm.KinematicError(amplitude=amplitude, order=order, phase=own), at="gear")
+    networks = [scene.network() for scene in (plain.with_effect(beating, at="gear"), apart)]
+    for angle in (0.0, 0.7, 4.0, 60.0):
+        given = [network.moment(0.0, {"motor": angle, "load": 0.01}, {"motor": 9.0, "load": 0.2}, {}) for network in networks]
+        first, second = (network.torques(moment) for network, moment in zip(networks, given, strict=True))
+        for name in first:
+            assert first[name] == pytest.approx(second[name], rel=1e-10)
+
+
+def test_an_error_that_follows_the_output_does_not_beat_with_its_own_turn() -> None:
+    with pytest.raises(ParameterError, match="must be 'wave_generator'"):
+        hm.BeatingKinematicError(amplitude=1e-4, follows="flexspline")
+
+
 # -- motors ------------------------------------------------------------------------------------------------------
 
 

@@ -46,7 +46,7 @@ def test_laws_of_one_phenomenon_share_a_family() -> None:
         "friction": (hm.CoulombStribeckFriction, hm.LuGreFriction, hm.DahlFriction),
         "hysteresis": (hm.BoucWenHysteresis, hm.MaxwellSlipHysteresis, hm.IwanHysteresis),
         "backlash": (hm.CouplingBacklash, hm.LostMotion, hm.FilmBacklash),
-        "kinematic_error": (hm.KinematicError, hm.HarmonicKinematicError),
+        "kinematic_error": (hm.KinematicError, hm.HarmonicKinematicError, hm.BeatingKinematicError),
         "torque_ripple": (hm.TorqueRipple, hm.Cogging),
         "hidden_mode": (hm.HiddenMode, hm.FlexibleInertia),
         "sensor_delay": (hm.SensorLag, hm.SensorDelay),

@@ -488,7 +488,7 @@ def test_mesh_friction_with_bristles_slides_as_without_them() -> None:
 
 
 def test_a_kinematic_error_with_its_offset_starts_unwound() -> None:
-    for make in (hm.KinematicError, hm.HarmonicKinematicError):
+    for make in (hm.KinematicError, hm.HarmonicKinematicError, hm.BeatingKinematicError):
         effect = make(amplitude=1e-4, phase=0.7, offset=-1e-4 * math.sin(0.7))
         assert effect.error(0.0) == pytest.approx(0.0, abs=1e-18)
         assert effect.error(np.array([math.pi / 4.0])) == pytest.approx(1e-4 * (math.cos(0.7) - math.sin(0.7)))

@@ -132,6 +132,7 @@ EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.StiffnessVariation(variation=0.1, order=2.0, follows="flexspline"), "gear"),
     (hm.Cogging(amplitude=0.1, order=24.0, second_amplitude=0.02), "motor"),
     (hm.HarmonicKinematicError(amplitude=1e-4, third_amplitude=1e-5), "gear"),
+    (hm.BeatingKinematicError(amplitude=1e-4, modulation=0.2, modulation_phase=0.7), "gear"),
     (hm.ActuatorLag(time_constant=2e-3), "motor"),
     (hm.SupplySag(sag=0.01, torque_limit=9.0), "motor"),
     (hm.MotorScale(error=-0.1), "motor"),
