@@ -140,6 +140,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.second_order_lag": ("SecondOrderLag",),
     "effects.spread_slip_hysteresis": ("SpreadSlipHysteresis",),
     "effects.presliding_friction": ("PreslidingFriction",),
+    "effects.lubricated_friction": ("LubricatedFriction",),
     "effects.sensor_delay": ("SensorDelay",),
     "effects.sensor_effect": ("SensorEffect", "MemorySensorEffect"),
     "effects.sensor_gain": ("SensorGain",),

@@ -160,6 +160,7 @@ from hdrive_mbs.effects.loose_bolt import LooseBolt as LooseBolt
 from hdrive_mbs.effects.loose_fit import LooseFit as LooseFit
 from hdrive_mbs.effects.looseness import Looseness as Looseness
 from hdrive_mbs.effects.lost_motion import LostMotion as LostMotion
+from hdrive_mbs.effects.lubricated_friction import LubricatedFriction as LubricatedFriction
 from hdrive_mbs.effects.lugre_friction import LuGreFriction as LuGreFriction
 from hdrive_mbs.effects.magnetic_pull import MagneticPull as MagneticPull
 from hdrive_mbs.effects.maxwell_slip_hysteresis import MaxwellSlipHysteresis as MaxwellSlipHysteresis

@@ -11,7 +11,7 @@ import numpy as np
 from hdrive_mbs.effects.build_up import secant
 from hdrive_mbs.effects.effect import MemoryTorqueEffect
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE, followed_share, mixed
-from hdrive_mbs.effects.speed_growth import grown
+from hdrive_mbs.effects.hess_soom import hess_soom
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
 
@@ -50,10 +50,14 @@ class PreslidingFriction(MemoryTorqueEffect):
 
     def sliding_torque(self, speed: Value) -> Value:
         """L(w) [N m]."""
-        size = self.coulomb * (1.0 + self.asymmetry * np.sign(speed))
-        if self.drop == 0.0:
-            return size
-        return size * (1.0 + self.drop / (1.0 + grown(speed, self.stribeck_speed, self.stribeck_exponent)))
+        return hess_soom(
+            speed,
+            coulomb=self.coulomb,
+            drop=self.drop,
+            stribeck_speed=self.stribeck_speed,
+            exponent=self.stribeck_exponent,
+            asymmetry=self.asymmetry,
+        )
 
     def states(self) -> Mapping[str, str]:
         return {"torque": "N m"} if self.coulomb > 0.0 else {}

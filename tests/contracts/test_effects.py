@@ -54,6 +54,7 @@ from hdrive_mbs.effects.joint_slip import JointSlip
 from hdrive_mbs.effects.kinematic_error import KinematicError
 from hdrive_mbs.effects.load_lag import LoadLag
 from hdrive_mbs.effects.lost_motion import LostMotion
+from hdrive_mbs.effects.lubricated_friction import LubricatedFriction
 from hdrive_mbs.effects.lugre_friction import LuGreFriction
 from hdrive_mbs.effects.maxwell_slip_hysteresis import MaxwellSlipHysteresis
 from hdrive_mbs.effects.mesh_friction import MeshFriction
@@ -183,6 +184,7 @@ EXAMPLES = {
         Example(TorqueRipple(amplitude=0.3, relative=0.1, order=6.0), "motor", ("amplitude", "relative")),
         Example(EccentricLoad(mass=4.0, radius=0.3, start_angle=0.5), "load", ("mass",)),
         Example(DahlFriction(coulomb=5.0, presliding=2e-3, exponent=1.5), "load", ("coulomb",)),
+        Example(LubricatedFriction(coulomb=5.0, drop=0.5, stribeck_speed=0.1, asymmetry=0.2, smoothing_speed=0.02), "load", ("coulomb",)),
         Example(
             PreslidingFriction(coulomb=5.0, drop=0.5, stribeck_speed=0.1, asymmetry=0.2, presliding=2e-3, exponent=1.5),
             "load",

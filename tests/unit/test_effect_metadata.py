@@ -43,7 +43,7 @@ def test_a_class_without_a_family_is_its_own_and_a_subclass_keeps_one_that_is_gi
 
 def test_laws_of_one_phenomenon_share_a_family() -> None:
     families = {
-        "friction": (hm.CoulombStribeckFriction, hm.LuGreFriction, hm.DahlFriction),
+        "friction": (hm.CoulombStribeckFriction, hm.LuGreFriction, hm.DahlFriction, hm.LubricatedFriction),
         "hysteresis": (hm.BoucWenHysteresis, hm.MaxwellSlipHysteresis, hm.IwanHysteresis),
         "backlash": (hm.CouplingBacklash, hm.LostMotion, hm.FilmBacklash),
         "kinematic_error": (hm.KinematicError, hm.HarmonicKinematicError, hm.BeatingKinematicError),

@@ -348,6 +348,7 @@ def test_cross_coupling_that_grows_with_the_spin_turns_with_it(spin: float, expo
     [
         *((hm.BearingCrossCoupling(stiffness=1e5, exponent=exponent), "bearing") for exponent in (0.5, 1.0, 2.5)),
         (hm.PreslidingFriction(coulomb=1.0, drop=0.3, stribeck_exponent=0.75, presliding=1e-3), "disc"),
+        (hm.LubricatedFriction(coulomb=1.0, drop=0.3, stribeck_exponent=0.75, smoothing_speed=0.1), "disc"),
     ],
 )
 def test_what_depends_on_a_power_of_the_speed_has_a_slope_at_standstill(effect: Effect, at: str) -> None:
