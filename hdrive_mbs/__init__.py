@@ -132,6 +132,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.hidden_mode": ("HiddenMode",),
     "effects.iwan_hysteresis": ("IwanHysteresis",),
     "effects.lost_motion": ("LostMotion",),
+    "effects.soft_windup": ("SoftWindup",),
     "effects.motor_effect": ("MotorEffect",),
     "effects.motor_scale": ("MotorScale",),
     "effects.one_sided_stiffness": ("OneSidedStiffness",),

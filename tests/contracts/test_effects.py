@@ -75,6 +75,7 @@ from hdrive_mbs.effects.sensor_lag import SensorLag
 from hdrive_mbs.effects.sensor_offset import SensorOffset
 from hdrive_mbs.effects.sensor_quantisation import SensorQuantisation
 from hdrive_mbs.effects.series_compliance import SeriesCompliance
+from hdrive_mbs.effects.soft_windup import SoftWindup
 from hdrive_mbs.effects.spread_slip_hysteresis import SpreadSlipHysteresis
 from hdrive_mbs.effects.stiffness_asymmetry import StiffnessAsymmetry
 from hdrive_mbs.effects.stiffness_variation import StiffnessVariation
@@ -208,6 +209,7 @@ EXAMPLES = {
         Example(IwanHysteresis(torque_limit=8.0, slip_twist=1e-3, rounding=0.5), "gear", ("torque_limit",)),
         Example(StiffnessAsymmetry(asymmetry=0.3), "gear", ("asymmetry",)),
         Example(LostMotion(width=2e-4, film=2e-5), "gear", ("width",)),
+        Example(SoftWindup(width=2e-4, soft_twist=5e-5), "gear", ("width",)),
         Example(FilmBacklash(backlash=0.01, film=1e-3, film_damping=0.02), "coupling", ("backlash",)),
         Example(StiffnessVariation(variation=0.3, phase=0.4), "gear", ("variation",)),
         Example(

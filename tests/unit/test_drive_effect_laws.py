@@ -194,7 +194,30 @@ def test_film_backlash_damps_by_the_film_inside_and_by_the_law_in_contact() -> N
     assert torque(0.01, 3.0) - torque(0.01, 0.0) == pytest.approx(0.5 * 0.3 + 0.5 * 1.5, rel=1e-3)
 
 
-@pytest.mark.parametrize("effect", [hm.LostMotion(width=0.0, film=1e-3), hm.FilmBacklash(backlash=0.0, film=1e-3)])
+def test_a_soft_windup_has_no_torque_in_the_gap_and_lags_by_its_soft_twist_far_beyond() -> None:
+    torque = hm.SoftWindup(width=0.02, soft_twist=1e-3).changed(straight_law)
+    assert torque(0.01, 3.0) == pytest.approx(1.5)
+    # sqrt(4^2 + 1) - 1 of a thousandth
+    assert torque(0.014, 0.0) == pytest.approx(200.0 * 1e-3 * (math.sqrt(17.0) - 1.0))
+    assert torque(-0.014, 0.0) == pytest.approx(-200.0 * 1e-3 * (math.sqrt(17.0) - 1.0))
+    # e^2/(2 d) is left of the lag e at d beyond the edge
+    assert torque(0.11, 0.0) == pytest.approx(200.0 * (0.1 - 1e-3 + 1e-6 / 0.2), rel=1e-6)
+
+
+def test_a_soft_windup_goes_in_front_of_the_whole_gap_of_a_gear() -> None:
+    law = hm.PiecewiseLinearStiffness(lost_motion=3e-4, stiffness_1=3e4, stiffness_2=6e4, stiffness_3=1e5, torque_1=20.0, torque_2=90.0)
+    changed = drive(law).with_effect(hm.SoftWindup(width=2e-4, soft_twist=6e-5), at="gear").network().connection("gear")
+    moment = drive().network().moment(0.0, {}, {}, {})
+    twists = np.linspace(-4e-3, 4e-3, 201)
+    past = np.sign(twists) * np.maximum(np.abs(twists) - 2.5e-4, 0.0)
+    wound = np.sign(past) * (np.hypot(past, 6e-5) - 6e-5)
+    np.testing.assert_allclose(changed.torque(moment, twists, 0.0), law.replacing(lost_motion=0.0).torque(wound), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [hm.LostMotion(width=0.0, film=1e-3), hm.FilmBacklash(backlash=0.0, film=1e-3), hm.SoftWindup(width=0.0, soft_twist=1e-3)],
+)
 def test_a_gap_of_zero_is_the_law_itself(effect: hm.LawEffect) -> None:
     assert effect.changed(straight_law) is straight_law
 
@@ -204,6 +227,7 @@ def test_a_gap_of_zero_is_the_law_itself(effect: hm.LawEffect) -> None:
     [
         hm.LostMotion(width=0.01, film=1e-3),
         hm.FilmBacklash(backlash=0.01, film=1e-3),
+        hm.SoftWindup(width=0.01, soft_twist=1e-3),
         hm.StiffnessAsymmetry(asymmetry=0.5),
         hm.OneSidedStiffness(change=0.5, onset_twist=5e-3),
     ],

@@ -45,7 +45,7 @@ def test_laws_of_one_phenomenon_share_a_family() -> None:
     families = {
         "friction": (hm.CoulombStribeckFriction, hm.LuGreFriction, hm.DahlFriction, hm.LubricatedFriction),
         "hysteresis": (hm.BoucWenHysteresis, hm.MaxwellSlipHysteresis, hm.IwanHysteresis),
-        "backlash": (hm.CouplingBacklash, hm.LostMotion, hm.FilmBacklash),
+        "backlash": (hm.CouplingBacklash, hm.LostMotion, hm.FilmBacklash, hm.SoftWindup),
         "kinematic_error": (hm.KinematicError, hm.HarmonicKinematicError, hm.BeatingKinematicError),
         "torque_ripple": (hm.TorqueRipple, hm.Cogging),
         "hidden_mode": (hm.HiddenMode, hm.FlexibleInertia),

@@ -128,6 +128,7 @@ EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.IwanHysteresis(torque_limit=2.0, slip_twist=1e-3), "gear"),
     (hm.StiffnessAsymmetry(asymmetry=-0.2), "gear"),
     (hm.LostMotion(width=1e-4, film=1e-5), "gear"),
+    (hm.SoftWindup(width=1e-4, soft_twist=1e-5), "gear"),
     (hm.FilmBacklash(backlash=1e-3, film=1e-4, film_damping=0.1), "input_shaft"),
     (hm.StiffnessVariation(variation=0.1, order=2.0, follows="flexspline"), "gear"),
     (hm.Cogging(amplitude=0.1, order=24.0, second_amplitude=0.02), "motor"),

@@ -82,6 +82,27 @@ def test_a_second_cause_of_the_first_ones_family_is_first_of_all_a_better_law_of
     assert judge(400.0, [one], [found(fitted[1], (DRAG, RIPPLE), after, odds)]).fit is not one
 
 
+@pytest.mark.parametrize(
+    ("together", "odds", "kind"),
+    [
+        (1.008, 230_000.0, "effect"),
+        (300.0, 230_000.0, "unknown"),  # explains too little
+        (1.008, 91_510.0, "unknown"),  # hardly better than one of them
+    ],
+)
+def test_two_causes_may_show_together_where_neither_shows_alone(
+    fitted: tuple[Simulator, Fitted], together: float, odds: float, kind: str
+) -> None:
+    """The refitted model stands for one of them with its parameters, and the other by itself leaves more than it does."""
+    one, two = found(fitted[1], (DRAG,), 1165.0, 91_500.0), found(fitted[1], (DRAG, RIPPLE), together, odds)
+    claim = judge(1088.0, [one], [two])
+    assert claim.kind == kind
+    if kind == "effect":
+        assert claim.fit is two
+        assert claim.probabilities[DRAG.label] == claim.probabilities[RIPPLE.label] > 0.9
+    assert judge(1088.0, [one]).kind == "unknown"
+
+
 @pytest.mark.parametrize(("more", "alike"), [(0.0002, True), (-0.001, True), (0.0003, False)])
 def test_single_causes_that_leave_alike_are_not_told_apart_by_their_odds(
     fitted: tuple[Simulator, Fitted], more: float, alike: bool
