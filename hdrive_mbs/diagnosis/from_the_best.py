@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from hdrive_mbs.diagnosis.choosing import beyond
@@ -63,11 +63,11 @@ def unfinished(found: Sequence[Found]) -> list[tuple[Suspect, Task]]:
 
 
 def other_laws(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:
-    """Laws of the best label that were not fitted yet, with the values of the best in fields of the same name."""
+    """Laws of the best label that were not fitted yet, with the values of those that were in fields of the same name."""
     if not found or found[0].suspect.law == PARAMETER:
         return []
     best, known = found[0].fitted, {(item.suspect.label, item.suspect.law) for item in found}
-    values = best.hypothesis.rescaled(best.z)[0].added[-1].effect
+    values = _values([item.fitted for item in found if item.suspect.label == found[0].suspect.label])
     tasks = []
     for suspect in everything:
         if suspect.label != found[0].suspect.label or suspect.law == PARAMETER or (suspect.label, suspect.law) in known:
@@ -104,11 +104,23 @@ def twins(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect], s
     return tasks
 
 
-def _with_values(effect: Effect, other: Effect) -> Effect:
-    """An effect with the values of another in searched fields of the same name; as it is where they do not go together."""
-    shared = searched_fields(type(effect)).keys() & searched_fields(type(other)).keys()
+def _values(fits: Sequence[Fitted]) -> dict[str, float]:
+    """What fits found for the searched fields of their last effects, the first one that has a field.
+
+    fits : best first
+    """
+    values: dict[str, float] = {}
+    for fitted in fits:
+        effect = fitted.hypothesis.rescaled(fitted.z)[0].added[-1].effect
+        values = {name: getattr(effect, name) for name in searched_fields(type(effect))} | values
+    return values
+
+
+def _with_values(effect: Effect, values: Mapping[str, float]) -> Effect:
+    """An effect with given values in searched fields of the same name; as it is where they do not go together."""
+    shared = searched_fields(type(effect)).keys() & values.keys()
     try:
-        return effect.replacing(**{name: getattr(other, name) for name in shared})
+        return effect.replacing(**{name: values[name] for name in shared})
     except ParameterError:
         return effect
 

@@ -554,6 +554,14 @@ def test_other_laws_of_the_best_label_begin_with_its_values(simulator: Simulator
         if suspect.law == "PreslidingFriction":
             assert values["presliding"] == pytest.approx(2e-3)
             assert values["exponent"] == pytest.approx(1.6)
+    # what the best one does not have comes from the next one
+    smooth = Hypothesis(factors_of(BENCH), (Added(hm.CoulombStribeckFriction(coulomb=0.6, smoothing_speed=0.05), "load", "drag"),))
+    second = Found(
+        Suspect(("friction", "load"), "CoulombStribeckFriction", (smooth,), (smooth,)), fit(simulator, smooth, smooth.start(), steps=0)
+    )
+    presliding, *_ = (task for suspect, task in other_laws([second, dahl], base, everything) if suspect.law == "PreslidingFriction")
+    effect = presliding.hypothesis.added[-1].effect
+    assert (effect.coulomb, effect.presliding) == (pytest.approx(0.6), pytest.approx(2e-3))
     parameter = dataclasses.replace(dahl, suspect=dataclasses.replace(dahl.suspect, law="parameter"))
     assert other_laws([parameter], base, everything) == []
     assert [item.hypothesis for _, item in unfinished([dahl])] == [hypothesis]
@@ -629,22 +637,23 @@ def test_a_law_is_hopeless_beside_one_that_is_near(simulator: Simulator, leading
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "gain", "inexact"),
+    ("before", "after", "held", "gain", "inexact"),
     [
-        (5.0, 2.0, 1e4, True),  # leaves much
-        (5.0, 1.05, 1e4, False),
-        (1.013, 1.0095, 100.0, True),  # of a faint gap more than half, in logarithms above what noise may leave
-        (1.013, 1.0077, 100.0, False),
-        (1.013, 1.0095, 10.0, False),  # what does not show has no other law
-        (1.013, 1.0035, 100.0, False),  # noise
+        (5.0, 2.0, 2.0, 1e4, True),  # leaves much
+        (5.0, 1.05, 1.05, 1e4, False),
+        (5.0, 1.05, 2.0, 1e4, True),  # much of what no fit saw
+        (1.013, 1.0095, 1.0095, 100.0, True),  # of a faint gap more than half, in logarithms above what noise may leave
+        (1.013, 1.0077, 1.0077, 100.0, False),
+        (1.013, 1.0095, 1.0095, 10.0, False),  # what does not show has no other law
+        (1.013, 1.0035, 1.0035, 100.0, False),  # noise
     ],
 )
 def test_other_laws_are_tried_where_the_best_would_not_be_claimed(
-    simulator: Simulator, before: float, after: float, gain: float, inexact: bool
+    simulator: Simulator, before: float, after: float, held: float, gain: float, inexact: bool
 ) -> None:
     base = left_with(simulator, cost=1e5, chi_fit=before)
     hypothesis = Hypothesis(factors_of(BENCH), (Added(hm.QuadraticDrag(coefficient=1e-7), "motor", "drag"),))
-    fitted = dataclasses.replace(fit(simulator, hypothesis, hypothesis.start(), steps=0), chi_fit=after, chi_held=after)
+    fitted = dataclasses.replace(fit(simulator, hypothesis, hypothesis.start(), steps=0), chi_fit=after, chi_held=held)
     # log odds are the gain but for what the one number that is searched costs, some ten at most
     fitted = dataclasses.replace(fitted, cost=1e5 - gain)
     found = Found(Suspect(("drag", "motor"), "QuadraticDrag", (hypothesis,), (hypothesis,)), fitted)
