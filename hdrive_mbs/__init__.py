@@ -125,6 +125,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.dahl_hysteresis": ("DahlHysteresis",),
     "effects.encoder_eccentricity": ("EncoderEccentricity",),
     "effects.fading_cross_coupling": ("FadingCrossCoupling",),
+    "effects.gap_law_effect": ("GapLawEffect",),
     "effects.film_backlash": ("FilmBacklash",),
     "effects.flexible_inertia": ("FlexibleInertia",),
     "effects.harmonic_kinematic_error": ("HarmonicKinematicError",),

@@ -140,6 +140,7 @@ from hdrive_mbs.effects.fading_cross_coupling import FadingCrossCoupling as Fadi
 from hdrive_mbs.effects.film_backlash import FilmBacklash as FilmBacklash
 from hdrive_mbs.effects.flexible_inertia import FlexibleInertia as FlexibleInertia
 from hdrive_mbs.effects.friction_by_angle import FrictionByAngle as FrictionByAngle
+from hdrive_mbs.effects.gap_law_effect import GapLawEffect as GapLawEffect
 from hdrive_mbs.effects.ground_vibration import GroundVibration as GroundVibration
 from hdrive_mbs.effects.harmonic_kinematic_error import HarmonicKinematicError as HarmonicKinematicError
 from hdrive_mbs.effects.hertzian_clearance import HertzianClearance as HertzianClearance

@@ -15,6 +15,9 @@ from hdrive_mbs.plots.look import COLOURS, GREY, house_look, new_figure
 LEAST = 5
 """Cases that a step of detectability holds at least, where there are as many."""
 
+BESIDE = 0.04
+"""Probabilities closer than this have their numbers to either side."""
+
 
 def calibration_figure(rows: Sequence[Row]) -> Figure:
     """Share right over the probability that was said, with 95 % intervals."""
@@ -28,8 +31,16 @@ def calibration_figure(rows: Sequence[Row]) -> Figure:
         at = [item.confidence for item in found]
         spread = np.abs(ends.T - shown)
         ax.errorbar(at, shown, yerr=spread, color=COLOURS[0], marker="o", linestyle="none", label="answers (number), 95 % interval")
-        for item in found:
-            ax.annotate(f" {item.of}", (item.confidence, item.share), textcoords="offset points", xytext=(4, 5), fontsize=8)
+        for item, following in zip(found, (*at[1:], math.inf), strict=True):
+            left = following - item.confidence < BESIDE  # so that "1" and "1" are not read as eleven
+            ax.annotate(
+                f"{item.of}",
+                (item.confidence, item.share),
+                textcoords="offset points",
+                xytext=(-6 if left else 6, 5),
+                ha="right" if left else "left",
+                fontsize=8,
+            )
         ax.set(xlabel="probability of the answer", ylabel="share of right answers", xlim=(0, 1.06), ylim=(-0.03, 1.06))
         ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)
         return made

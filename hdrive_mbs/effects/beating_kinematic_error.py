@@ -24,8 +24,8 @@ class BeatingKinematicError(HarmonicKinematicError):
     with the true angle a of the wave generator, counted from the circular spline, and u the absolute value of the ratio: a/u is a turn of
     the output, but for the twist.  Signs, place and reaction as in KinematicError.  Each order k n has side bands 1/u to both sides.
 
-    Source: Jia et al., Mechanism and Machine Theory 155 (2021) 104122, whose measured errors beat, for run-out of both splines beside
-    that of the wave generator.  Leaves out that each of them has its own phase for each harmonic.
+    Source: Jia et al., Mechanism and Machine Theory 155 (2021) 104122, who find beats in the error of drives with errors of machining and
+    assembly; that one factor stands before all harmonics is our own.  Leaves out that each may beat with its own depth and phase.
     """
 
     modulation: float = parameter("1", "m, change of the size in a turn of the output", default=0.0, low=0.0, high=1.0, typical=(1e-2, 0.5))

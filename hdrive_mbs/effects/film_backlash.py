@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from hdrive_mbs.effects.dead_zone import beyond, contact_share, dead_zone
-from hdrive_mbs.effects.effect import LawEffect
+from hdrive_mbs.effects.gap_law_effect import GapLawEffect
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class FilmBacklash(LawEffect):
+class FilmBacklash(GapLawEffect):
     """Backlash whose flanks meet on a film: no corner, and damping in the gap.
 
     tau = T(d, 0) + s (T(d, v) - T(d, 0)) + (1 - s) c v,  s = dd/dx,
@@ -39,9 +39,6 @@ class FilmBacklash(LawEffect):
     signature: ClassVar[str] = (
         "little torque over a range of twist, soft at its edges; load reversals without knocking, a lower resonance at small amplitude"
     )
-
-    def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:
-        return self.changed_beyond(law, 0.0)
 
     def changed_beyond(self, law: Callable[[Value, Value], Value], gap: float) -> Callable[[Value, Value], Value]:
         if self.backlash == 0.0:

@@ -2,16 +2,33 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from hdrive_mbs.effects.speed_growth import grown
 from hdrive_mbs.expression import Value
+from hdrive_mbs.quantities import parameter
 
 
-def hess_soom(speed: Value, *, coulomb: float, drop: float, stribeck_speed: float, exponent: float, asymmetry: float) -> Value:
-    """L(w) = T_C (1 + a sign(w)) (1 + d/(1 + |w/w_S|^p)) [N m]
+@dataclass(frozen=True, kw_only=True)
+class HessSoomSliding:
+    """The fields of such a torque, for the laws that have it; they come before a law's own.
 
-    Source: Hess, Soom, J. Tribology 112 (1990) 147, with p = 2.
+    L(w) = T_C (1 + a sign(w)) (1 + d/(1 + |w/w_S|^p))
+
+    Source: Hess, Soom, J. Tribology 112 (1990) 147, with p = 2; unequal senses are added.
     """
-    size = coulomb * (1.0 + asymmetry * np.sign(speed))
-    return size if drop == 0.0 else size * (1.0 + drop / (1.0 + grown(speed, stribeck_speed, exponent)))
+
+    coulomb: float = parameter("N m", "sliding torque T_C", low=0.0, high=1e3, typical=(5e-3, 50.0))
+    drop: float = parameter("1", "d, share by which breaking away takes more", default=0.0, low=0.0, high=10.0, typical=(0.02, 2.0))
+    stribeck_speed: float = parameter("rad/s", "speed w_S of the drop", default=1.0, above=0.0, typical=(0.01, 20.0))
+    stribeck_exponent: float = parameter("1", "p, shape of the drop", default=1.5, low=0.25, high=4.0, typical=(0.5, 2.5))
+    asymmetry: float = parameter("1", "a, share by which forward friction is larger", default=0.0, low=-0.9, high=0.9, typical=(-0.3, 0.3))
+
+    def sliding_torque(self, speed: Value) -> Value:
+        """L(w) [N m]."""
+        size = self.coulomb * (1.0 + self.asymmetry * np.sign(speed))
+        if self.drop == 0.0:
+            return size
+        return size * (1.0 + self.drop / (1.0 + grown(speed, self.stribeck_speed, self.stribeck_exponent)))

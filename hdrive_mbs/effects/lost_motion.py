@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from hdrive_mbs.effects.dead_zone import beyond, dead_zone
-from hdrive_mbs.effects.effect import LawEffect
+from hdrive_mbs.effects.gap_law_effect import GapLawEffect
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class LostMotion(LawEffect):
+class LostMotion(GapLawEffect):
     """A dead zone in front of the law of a connection, in which its damping goes on.
 
     tau = T(r, 0) + T(s, v) - T(s, 0),  r = d + sign(d) g/2,  d(x) = x + (sqrt((x - h)^2 + e^2) - sqrt((x + h)^2 + e^2))/2,  h = (g + b)/2
@@ -37,9 +37,6 @@ class LostMotion(LawEffect):
     leads: ClassVar[bool] = True
     starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"width": (1e-5, 5e-5, 3e-4, 1.5e-3)}
     signature: ClassVar[str] = "no elastic torque over a range of twist; offset between both senses, a soft resonance at small torque"
-
-    def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:
-        return self.changed_beyond(law, 0.0)
 
     def changed_beyond(self, law: Callable[[Value, Value], Value], gap: float) -> Callable[[Value, Value], Value]:
         if self.width == 0.0:

@@ -8,14 +8,14 @@ from typing import ClassVar
 
 import numpy as np
 
-from hdrive_mbs.effects.effect import LawEffect
+from hdrive_mbs.effects.gap_law_effect import GapLawEffect
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import option, parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class OneSidedStiffness(LawEffect):
+class OneSidedStiffness(GapLawEffect):
     """The elastic torque of a connection, scaled in one sense and as known in the other.
 
     tau = T(x, v) + a s T(x, 0),  s = y/(y + x_0),  y = max(x - g/2, 0) if forward, max(-x - g/2, 0) if reverse
@@ -39,9 +39,6 @@ class OneSidedStiffness(LawEffect):
     def check(self) -> None:
         if self.side not in ("forward", "reverse"):
             raise ParameterError(f"OneSidedStiffness.side = {self.side!r}: must be 'forward' or 'reverse'.")
-
-    def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:
-        return self.changed_beyond(law, 0.0)
 
     def changed_beyond(self, law: Callable[[Value, Value], Value], gap: float) -> Callable[[Value, Value], Value]:
         sense = 1.0 if self.side == "forward" else -1.0

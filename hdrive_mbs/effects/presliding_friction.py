@@ -11,13 +11,13 @@ import numpy as np
 from hdrive_mbs.effects.build_up import secant
 from hdrive_mbs.effects.effect import MemoryTorqueEffect
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE, followed_share, mixed
-from hdrive_mbs.effects.hess_soom import hess_soom
+from hdrive_mbs.effects.hess_soom import HessSoomSliding
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class PreslidingFriction(MemoryTorqueEffect):
+class PreslidingFriction(HessSoomSliding, MemoryTorqueEffect):
     """Dahl's build-up of the torque towards a sliding torque of Stribeck's shape that may differ in both senses.
 
     tau = -y,  dy/dt = (T_C/x_p) w D,  D = |1 - u|^n sign(1 - u),  u = y sign(w)/L(w),
@@ -32,11 +32,6 @@ class PreslidingFriction(MemoryTorqueEffect):
     (LuGreFriction), load, temperature, and a lag of the sliding torque behind the speed.
     """
 
-    coulomb: float = parameter("N m", "sliding torque T_C", low=0.0, high=1e3, typical=(5e-3, 50.0))
-    drop: float = parameter("1", "d, share by which breaking away takes more", default=0.0, low=0.0, high=10.0, typical=(0.02, 2.0))
-    stribeck_speed: float = parameter("rad/s", "speed w_S of the drop", default=1.0, above=0.0, typical=(0.01, 20.0))
-    stribeck_exponent: float = parameter("1", "p, shape of the drop", default=1.5, low=0.25, high=4.0, typical=(0.5, 2.5))
-    asymmetry: float = parameter("1", "a, share by which forward friction is larger", default=0.0, low=-0.9, high=0.9, typical=(-0.3, 0.3))
     presliding: float = parameter("rad", "x_p, angle over which the torque builds up", above=0.0, typical=(1e-4, 0.1))
     exponent: float = parameter("1", "n, shape of the build-up", default=1.0, low=0.5, high=4.0, typical=(1.0, 2.5))
     fastest_rate: float = parameter("1/s", "f, rate up to which the state is followed", default=FASTEST_RATE, above=0.0)
@@ -47,17 +42,6 @@ class PreslidingFriction(MemoryTorqueEffect):
         "torque against the motion that turns over within a small angle after each reversal, larger at low speed and in one sense"
     )
     starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"presliding": (5e-4, 5e-3), "stribeck_speed": (0.1, 5.0)}
-
-    def sliding_torque(self, speed: Value) -> Value:
-        """L(w) [N m]."""
-        return hess_soom(
-            speed,
-            coulomb=self.coulomb,
-            drop=self.drop,
-            stribeck_speed=self.stribeck_speed,
-            exponent=self.stribeck_exponent,
-            asymmetry=self.asymmetry,
-        )
 
     def states(self) -> Mapping[str, str]:
         return {"torque": "N m"} if self.coulomb > 0.0 else {}

@@ -9,13 +9,13 @@ from typing import ClassVar
 import numpy as np
 
 from hdrive_mbs.effects.dead_zone import beyond, dead_zone
-from hdrive_mbs.effects.effect import LawEffect
+from hdrive_mbs.effects.gap_law_effect import GapLawEffect
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class SoftWindup(LawEffect):
+class SoftWindup(GapLawEffect):
     """A dead zone in front of the law of a connection, and beyond its edges a stiffness that comes up from zero.
 
     tau = T(r, 0) + T(s, v) - T(s, 0),  r = z + sign(z) g/2,  z = sign(d) (sqrt(d^2 + e^2) - e),
@@ -25,8 +25,8 @@ class SoftWindup(LawEffect):
     about e beyond each edge, and far beyond z lags by e: there the gap is wider by 2 e.  There is no torque inside the gap, where
     LostMotion has some with its film.  Damping stays as the law has it.  The elastic torque depends on x alone, so no energy is made.
 
-    Source: soft windup of harmonic drives, Kircanski, Goldenberg, Int. J. Robotics Research 16 (1997) 214; Tuttle, Seering, IEEE Trans.
-    Robotics and Automation 12 (1996) 368; the hyperbola is our own.  Leaves out that the soft range moves with load and assembly.
+    Source: a maker's catalogue names it ("soft windup characteristics in the low torque region", Harmonic Drive, FR component sets); the
+    hyperbola is our own.  Leaves out that the soft range moves with load and assembly.
     """
 
     width: float = parameter("rad", "full width b of the gap", low=0.0, high=0.2, typical=(1e-5, 0.01))
@@ -37,9 +37,6 @@ class SoftWindup(LawEffect):
     family: ClassVar[str] = "backlash"
     starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"width": (1e-5, 5e-5, 3e-4, 1.5e-3)}
     signature: ClassVar[str] = "no elastic torque over a range of twist and little beyond it; a resonance that comes down at small torque"
-
-    def changed(self, law: Callable[[Value, Value], Value]) -> Callable[[Value, Value], Value]:
-        return self.changed_beyond(law, 0.0)
 
     def changed_beyond(self, law: Callable[[Value, Value], Value], gap: float) -> Callable[[Value, Value], Value]:
         if self.width == 0.0:

@@ -423,16 +423,13 @@ def test_presliding_friction_slides_at_unequal_torques_that_drop_with_speed() ->
     assert law.sliding_torque(1e6) == pytest.approx(5.5)
 
 
-def test_lubricated_friction_slides_like_presliding_friction_and_rises_from_zero_with_the_speed() -> None:
-    sizes = {"coulomb": 5.0, "drop": 0.6, "stribeck_speed": 2.0, "stribeck_exponent": 1.3, "asymmetry": 0.1}
-    law = hm.LubricatedFriction(**sizes, smoothing_speed=0.01)
-    fast = np.array([-50.0, -2.0, -0.3, 0.3, 2.0, 50.0])
-    np.testing.assert_allclose(
-        -law.torque(0.0, 0.0, fast), np.sign(fast) * hm.PreslidingFriction(**sizes, presliding=1e-3).sliding_torque(fast), rtol=1e-12
-    )
-    # T_C (1 + a)(1 + d) w/w_0 close to zero, where |w/w_S| is far below one
-    slow = 1e-5
-    assert -law.torque(0.0, 0.0, slow) == pytest.approx(5.0 * 1.1 * 1.6 * slow / 0.01, rel=1e-3)
+def test_lubricated_friction_slides_at_a_torque_that_drops_and_rises_from_zero_with_the_speed() -> None:
+    law = hm.LubricatedFriction(coulomb=5.0, drop=0.6, stribeck_speed=2.0, stribeck_exponent=2.0, asymmetry=0.1, smoothing_speed=0.01)
+    # T_C (1 +- a)(1 + d/(1 + (w/w_S)^2)) against the motion, where tanh is 1: (w/w_S)^2 = 1, 9, 1/4
+    for speed, size in ((2.0, 5.0 * 1.1 * 1.3), (-2.0, 5.0 * 0.9 * 1.3), (6.0, 5.0 * 1.1 * 1.06), (-1.0, 5.0 * 0.9 * 1.48)):
+        assert law.torque(0.0, 0.0, speed) == pytest.approx(-math.copysign(size, speed), rel=1e-12)
+    # T_C (1 + a)(1 + d) w/w_0 close to zero: tanh leaves (w/w_0)^2/3, the drop (w/w_S)^2
+    assert law.torque(0.0, 0.0, 1e-5) == pytest.approx(-5.0 * 1.1 * 1.6 * 1e-3, rel=4e-7)
     assert law.torque(0.0, 0.0, 0.0) == 0.0
 
 
