@@ -23,7 +23,7 @@ import numpy as np
 from benchmarks.withheld import sealing
 from benchmarks.withheld.bench import BENCHES, load
 from benchmarks.withheld.folder import write_case
-from benchmarks.withheld.mixture import NULLS, SHARES, Site, mixture, singles
+from benchmarks.withheld.mixture import NULLS, PAIRS, SHARES, Site, mixture, singles
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -37,6 +37,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--open", action="store_true", help="truth.json in each case folder, nothing sealed")
     parser.add_argument("--causes", help="names of causes, separated by commas: one of these in every case; for open sets")
     parser.add_argument("--nulls", action="store_true", help="nothing planted in any case: for the rate of false alarms")
+    parser.add_argument("--pairs", action="store_true", help="two causes in every case: for the share of which both are found")
     parser.add_argument("--noise", choices=("stated", "coloured"), default="stated", help="coloured: part of the white noise has a memory")
     parser.add_argument("--jobs", type=int, default=1, help="processes (default 1)")
     options = parser.parse_args(arguments)
@@ -50,6 +51,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     if options.causes and options.nulls:
         parser.error("--nulls plants nothing; leave --causes away")
+    if options.pairs and (options.causes or options.nulls):
+        parser.error("--pairs plants two causes that it draws; leave --causes and --nulls away")
     if options.causes and not options.open:
         parser.error("--causes says what a set holds; it goes with --open")
     names = tuple(options.causes.split(",")) if options.causes else ()
@@ -58,14 +61,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"--causes {','.join(unknown)}: the {options.bench} bench has {', '.join(known)}")
 
     seed = options.seed if options.seed is not None else secrets.randbits(63)
-    shares = NULLS if options.nulls else SHARES
+    shares = NULLS if options.nulls else PAIRS if options.pairs else SHARES
     labels = make_set(options.bench, options.cases, seed, options.out, noise=options.noise, jobs=options.jobs, names=names, shares=shares)
     if options.open:
         for case, truth in labels.items():
             (options.out / case / "truth.json").write_text(sealing.truth_text(truth), encoding="utf-8")
         return 0
     sealed = {case: sealing.seal(truth) for case, truth in labels.items()}
-    about = {"bench": options.bench, "cases": options.cases, "seed": seed, "noise": options.noise, "nulls": options.nulls}
+    about = {
+        "bench": options.bench,
+        "cases": options.cases,
+        "seed": seed,
+        "noise": options.noise,
+        "nulls": options.nulls,
+        "pairs": options.pairs,
+    }
     sealing.write_key(key, sealed, about)
     sealing.write_commitments(options.out, sealed)
     print(f"{len(sealed)} cases in {options.out}, truths in {key}", file=sys.stderr)

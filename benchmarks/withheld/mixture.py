@@ -12,6 +12,8 @@ from benchmarks.withheld.case import KINDS, Cause
 SHARES = {"null": 0.15, "effect": 0.44, "parameter": 0.10, "sensor": 0.08, "unlisted": 0.12, "pair": 0.11}
 NULLS = {kind: float(kind == "null") for kind in KINDS}
 """Nothing but nulls."""
+PAIRS = {kind: float(kind == "pair") for kind in KINDS}
+"""Nothing but pairs."""
 Site = tuple[str, str]  # name and place
 
 

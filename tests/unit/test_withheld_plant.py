@@ -553,6 +553,19 @@ def test_a_set_of_nulls_holds_no_cause_and_is_sealed_all_the_same(
     assert "--nulls plants nothing" in capsys.readouterr().err
 
 
+def test_a_set_of_pairs_holds_two_different_causes_in_every_case(
+    quick: QuickBench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "set"
+    assert make.main(["--bench", "drive", "--cases", "4", "--pairs", "--seed", "3", "--open", "--out", str(folder)]) == 0
+    truths = [json.loads(path.read_text(encoding="utf-8"))["truth"] for path in sorted(folder.glob("*/truth.json"))]
+    assert len(truths) == 4
+    assert all(len({cause["effect"] for cause in truth}) == 2 for truth in truths)
+    with pytest.raises(SystemExit):
+        make.main(["--bench", "drive", "--pairs", "--nulls", "--out", str(tmp_path / "other")])
+    assert "--pairs plants two causes" in capsys.readouterr().err
+
+
 @needs_round_1
 def test_the_scorer_of_round_1_reads_the_labels(quick: QuickBench, tmp_path: Path) -> None:
     folder = tmp_path / "set"
