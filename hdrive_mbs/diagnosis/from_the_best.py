@@ -75,7 +75,7 @@ def other_laws(found: Sequence[Found], base: Fitted, everything: Sequence[Suspec
         made: dict[Effect, Hypothesis] = {}
         for start in suspect.all:
             *before, last = start.added
-            effect = _with_values(last.effect, values)
+            effect = with_values(last.effect, values)
             made.setdefault(effect, Hypothesis(start.factors, (*before, Added(effect, last.at, last.name)), start.loose))
         tasks += [(suspect, _from(best, base, start)) for start in list(made.values())[:STARTS]]
     return tasks
@@ -111,12 +111,16 @@ def _values(fits: Sequence[Fitted]) -> dict[str, float]:
     """
     values: dict[str, float] = {}
     for fitted in fits:
-        effect = fitted.hypothesis.rescaled(fitted.z)[0].added[-1].effect
-        values = {name: getattr(effect, name) for name in searched_fields(type(effect))} | values
+        values = values_of(fitted.hypothesis.rescaled(fitted.z)[0].added[-1].effect) | values
     return values
 
 
-def _with_values(effect: Effect, values: Mapping[str, float]) -> Effect:
+def values_of(effect: Effect) -> dict[str, float]:
+    """Its searched fields."""
+    return {name: getattr(effect, name) for name in searched_fields(type(effect))}
+
+
+def with_values(effect: Effect, values: Mapping[str, float]) -> Effect:
     """An effect with given values in searched fields of the same name; as it is where they do not go together."""
     shared = searched_fields(type(effect)).keys() & values.keys()
     try:

@@ -104,27 +104,36 @@ def moved(team: Team, simulator: Simulator, pairs: Sequence[Found], tried: Seque
     return replaced(team, simulator, pairs, elsewhere)
 
 
-def replaced(team: Team, simulator: Simulator, pairs: Sequence[Found], others: Callable[[Hypothesis, int], Iterable[Added]]) -> list[Found]:
+def replaced(
+    team: Team,
+    simulator: Simulator,
+    pairs: Sequence[Found],
+    others: Callable[[Hypothesis, int], Iterable[Added]],
+    *,
+    by_law: bool = False,
+) -> list[Found]:
     """The best pair with one of its causes replaced, but where another of the pairs has both: first steps, and more of the nearest.
 
     pairs : at least one, fitted to the end;  others : of a hypothesis and the number of a cause in it, what is tried in its place
+    by_law : whether two causes with other laws count as another pair
     """
+    names = _laws_of if by_law else _causes_of
     best = min(pairs, key=lambda item: item.fitted.cost)
     full, z = best.fitted.hypothesis.rescaled(best.fitted.z)
-    known = {_causes(item) for item in pairs}
+    known = {names(item.fitted.hypothesis) for item in pairs}
     tasks, whose = [], []
     for k in range(len(full.added)):
         is_second = k == len(full.added) - 1 and best.suspect.law != PARAMETER
         for added in others(full, k):
             hypothesis = Hypothesis(full.factors, (*full.added[:k], added, *full.added[k + 1 :]), full.loose)
-            if _causes_of(hypothesis) in known or len(hypothesis.labels) < len(full.added):
+            if names(hypothesis) in known or len(hypothesis.labels) < len(full.added):
                 continue
             tasks.append(Task(hypothesis, hypothesis.start(full.nominal_part(z)), None, FIRST, FINE))
             law = type(added.effect).__name__
             whose.append(Suspect(added.label, law, (hypothesis,), (hypothesis,)) if is_second else best.suspect)
     begun: dict[frozenset[object], Found] = {}
     for item in sorted(those_that_ran(whose, team.map(run_task, simulator, tasks)), key=lambda item: item.fitted.cost):
-        begun.setdefault(_causes(item), item)
+        begun.setdefault(names(item.fitted.hypothesis), item)
     open_ = [item for item in begun.values() if not (item.fitted.converged or is_hopeless(item.fitted.chi_fit, best.fitted.chi_fit))]
     going = open_[:GOING]
     found = [item for item in begun.values() if item not in going]
@@ -164,3 +173,7 @@ def _causes(pair: Found) -> frozenset[object]:
 
 def _causes_of(hypothesis: Hypothesis) -> frozenset[object]:
     return frozenset((*hypothesis.labels, *hypothesis.loose))
+
+
+def _laws_of(hypothesis: Hypothesis) -> frozenset[object]:
+    return frozenset((*((item.label, type(item.effect)) for item in hypothesis.added), *hypothesis.loose))

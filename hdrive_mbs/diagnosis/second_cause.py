@@ -12,12 +12,13 @@ import numpy as np
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import enough
 from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.pair_laws import with_other_laws
 from hdrive_mbs.diagnosis.pairs import alone, contenders, joined, moved, swapped
 from hdrive_mbs.diagnosis.recast import recast
 from hdrive_mbs.diagnosis.search import Depth, Search, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.stages import Report, under
-from hdrive_mbs.diagnosis.suspects import suspects
+from hdrive_mbs.diagnosis.suspects import Suspect, suspects
 from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.verdict import LITTLE, left, takes_most
@@ -115,10 +116,25 @@ def second_cause(
         for item in others:
             more = search(team, coarse, item.fitted, groups, tried, depth=SHALLOW, report=partial(under, said, "first cause again"))
             found = contenders(team, coarse, [*found, *more.found], first)
-    if left(found[0].fitted) > enough(null, LEFT) and not team.deadline.passed("other causes at the places of the pair"):
-        found = contenders(team, coarse, [*found, *recast(team, coarse, found, everything)], first)
+    found = _exchanged_in_place(team, coarse, null, found, first, everything)
     elsewhere = [] if team.deadline.passed("causes of the pair at other places") else moved(team, coarse, found, tried)
     pairs = contenders(team, coarse, [*found, *elsewhere], first)
     if pairs[0].suspect.label not in {item.suspect.label for item in others}:
         others += alone(team, coarse, pairs[0], everything, first)
     return pair, pairs, tuple(others)
+
+
+def _exchanged_in_place(
+    team: Team, coarse: Simulator, null: Fitted, found: tuple[Found, ...], first: Found, everything: Sequence[Suspect]
+) -> tuple[Found, ...]:
+    """Where the best pair leaves much: with other laws of its causes, with other causes at their places, and with other laws of those."""
+    told = None
+    for what, others in (("other laws", with_other_laws), ("other causes", recast), ("other laws", with_other_laws)):
+        causes = found[0].fitted.hypothesis.labels
+        if others is with_other_laws and causes == told:
+            continue
+        if left(found[0].fitted) <= enough(null, LEFT) or team.deadline.passed(f"{what} at the places of the pair"):
+            break
+        told = causes if others is with_other_laws else told
+        found = contenders(team, coarse, [*found, *others(team, coarse, found, everything)], first)
+    return found

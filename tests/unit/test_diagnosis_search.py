@@ -937,6 +937,7 @@ def test_the_first_of_two_causes_is_looked_for_again_beside_the_second_where_bot
         "joined": lambda *some: [],
         "swapped": lambda *some: [],
         "recast": lambda *some: [],
+        "with_other_laws": lambda *some: [],
         "moved": lambda team, coarse, some, tried: ends.append(some) or [],
         "alone": lambda *some: [second],
         "contenders": lambda team, coarse, some, first: tuple(sorted(some, key=lambda item: item.fitted.cost))[:1],
