@@ -15,9 +15,9 @@ from hdrive_mbs.quantities import parameter
 class HessSoomSliding:
     """The fields of such a torque, for the laws that have it; they come before a law's own.
 
-    L(w) = T_C (1 + a sign(w)) (1 + d/(1 + |w/w_S|^p))
+    L(w) = T_C (1 + a tanh(w/w_a)) (1 + d/(1 + |w/w_S|^p))
 
-    Source: Hess, Soom, J. Tribology 112 (1990) 147, with p = 2; unequal senses are added.
+    Source: Hess, Soom, J. Tribology 112 (1990) 147, with p = 2; unequal senses are added, which a film may build up with the speed.
     """
 
     coulomb: float = parameter("N m", "sliding torque T_C", low=0.0, high=1e3, typical=(5e-3, 50.0))
@@ -25,10 +25,13 @@ class HessSoomSliding:
     stribeck_speed: float = parameter("rad/s", "speed w_S of the drop", default=1.0, above=0.0, typical=(0.01, 20.0))
     stribeck_exponent: float = parameter("1", "p, shape of the drop", default=1.5, low=0.25, high=4.0, typical=(0.5, 2.5))
     asymmetry: float = parameter("1", "a, share by which forward friction is larger", default=0.0, low=-0.9, high=0.9, typical=(-0.3, 0.3))
+    asymmetry_speed: float = parameter(
+        "rad/s", "speed w_a from which on the senses differ by all of it", default=1e-3, above=0.0, typical=(1e-3, 30.0)
+    )
 
     def sliding_torque(self, speed: Value) -> Value:
         """L(w) [N m]."""
-        size = self.coulomb * (1.0 + self.asymmetry * np.sign(speed))
+        size = self.coulomb * (1.0 + self.asymmetry * np.tanh(speed / self.asymmetry_speed))
         if self.drop == 0.0:
             return size
         return size * (1.0 + self.drop / (1.0 + grown(speed, self.stribeck_speed, self.stribeck_exponent)))

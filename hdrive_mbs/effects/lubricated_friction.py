@@ -18,7 +18,7 @@ from hdrive_mbs.quantities import parameter
 class LubricatedFriction(HessSoomSliding, TorqueEffect):
     """Sliding torque with a slow Stribeck drop and unequal senses, without presliding: it rises with the speed from zero.
 
-    tau = -tanh(w/w_0) L(w),  L(w) = T_C (1 + a sign(w)) (1 + d/(1 + |w/w_S|^p))
+    tau = -tanh(w/w_0) L(w),  L(w) = T_C (1 + a tanh(w/w_a)) (1 + d/(1 + |w/w_S|^p))
 
     Source: the drop of Hess, Soom, J. Tribology 112 (1990) 147 (there p = 2), with sign(w) regularised by tanh as in
     CoulombStribeckFriction.  Leaves out true sticking and presliding (PreslidingFriction), and that the friction of a film
@@ -30,7 +30,11 @@ class LubricatedFriction(HessSoomSliding, TorqueEffect):
     family: ClassVar[str] = "friction"
     dissipative: ClassVar[bool] = True
     signature: ClassVar[str] = "torque against the motion that turns over with the speed, larger at low speed and in one sense"
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"smoothing_speed": (0.01, 0.3), "stribeck_speed": (0.1, 5.0)}
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {
+        "smoothing_speed": (0.01, 0.3),
+        "stribeck_speed": (0.1, 5.0),
+        "asymmetry_speed": (1.0,),
+    }
 
     def torque(self, time: Value, angle: Value, speed: Value) -> Value:
         return -np.tanh(speed / self.smoothing_speed) * self.sliding_torque(speed)

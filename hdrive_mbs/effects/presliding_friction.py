@@ -21,7 +21,7 @@ class PreslidingFriction(HessSoomSliding, MemoryTorqueEffect):
     """Dahl's build-up of the torque towards a sliding torque of Stribeck's shape that may differ in both senses.
 
     tau = -y,  dy/dt = (T_C/x_p) w D,  D = |1 - u|^n sign(1 - u),  u = y sign(w)/L(w),
-    L(w) = T_C (1 + a sign(w)) (1 + d/(1 + |w/w_S|^p))
+    L(w) = T_C (1 + a tanh(w/w_a)) (1 + d/(1 + |w/w_S|^p))
 
     y runs to L sign(w) over an angle of about x_p.  A small x_p is sliding friction without presliding, n = 1 LuGre's
     law without damping.  With the stored energy y^2 x_p/(2 T_C) the heat is |w| L u (1 - D), which is never negative.
@@ -41,7 +41,11 @@ class PreslidingFriction(HessSoomSliding, MemoryTorqueEffect):
     signature: ClassVar[str] = (
         "torque against the motion that turns over within a small angle after each reversal, larger at low speed and in one sense"
     )
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"presliding": (5e-4, 5e-3), "stribeck_speed": (0.1, 5.0)}
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {
+        "presliding": (5e-4, 5e-3),
+        "stribeck_speed": (0.1, 5.0),
+        "asymmetry_speed": (1.0,),
+    }
 
     def states(self) -> Mapping[str, str]:
         return {"torque": "N m"} if self.coulomb > 0.0 else {}

@@ -423,13 +423,19 @@ def test_presliding_friction_slides_at_unequal_torques_that_drop_with_speed() ->
     assert law.sliding_torque(1e6) == pytest.approx(5.5)
 
 
+def test_friction_of_both_senses_may_come_apart_with_the_speed() -> None:
+    law = hm.PreslidingFriction(coulomb=5.0, asymmetry=0.2, asymmetry_speed=3.0, presliding=1e-3)
+    # tanh(1) = 0.76159, tanh(1/10) = 0.099668
+    assert law.sliding_torque(np.array([3.0, -3.0, 0.3, 300.0])) == pytest.approx([5.76159, 4.23841, 5.099668, 6.0], rel=1e-6)
+
+
 def test_lubricated_friction_slides_at_a_torque_that_drops_and_rises_from_zero_with_the_speed() -> None:
     law = hm.LubricatedFriction(coulomb=5.0, drop=0.6, stribeck_speed=2.0, stribeck_exponent=2.0, asymmetry=0.1, smoothing_speed=0.01)
     # T_C (1 +- a)(1 + d/(1 + (w/w_S)^2)) against the motion, where tanh is 1: (w/w_S)^2 = 1, 9, 1/4
     for speed, size in ((2.0, 5.0 * 1.1 * 1.3), (-2.0, 5.0 * 0.9 * 1.3), (6.0, 5.0 * 1.1 * 1.06), (-1.0, 5.0 * 0.9 * 1.48)):
         assert law.torque(0.0, 0.0, speed) == pytest.approx(-math.copysign(size, speed), rel=1e-12)
-    # T_C (1 + a)(1 + d) w/w_0 close to zero: tanh leaves (w/w_0)^2/3, the drop (w/w_S)^2
-    assert law.torque(0.0, 0.0, 1e-5) == pytest.approx(-5.0 * 1.1 * 1.6 * 1e-3, rel=4e-7)
+    # T_C (1 + a w/w_a)(1 + d) w/w_0 close to zero, w_a = 1e-3: tanh leaves (w/w_0)^2/3, the drop (w/w_S)^2
+    assert law.torque(0.0, 0.0, 1e-5) == pytest.approx(-5.0 * 1.001 * 1.6 * 1e-3, rel=4e-7)
     assert law.torque(0.0, 0.0, 0.0) == 0.0
 
 
