@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from hdrive_mbs.diagnosis.candidates import Candidate
+from hdrive_mbs.diagnosis.from_the_best import values_of, with_values
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect, renamed
@@ -67,7 +68,9 @@ def swapped(team: Team, simulator: Simulator, pair: Found, first: Label, others:
 def alone(team: Team, simulator: Simulator, pair: Found, everything: Sequence[Suspect], best: Found) -> list[Found]:
     """The second cause of a pair without the first, from the values of the pair.
 
-    The first may have done no more than bring the parameters to where the second shows.
+    The first may have done no more than bring the parameters to where the second shows.  Where the first is a parameter, other laws of the
+    second are tried from its values too: a mass on a spring beside an inertia that is too large by as much is a load of which a part
+    sits on a spring.
 
     best : single cause so far, with which it has to catch up
     """
@@ -76,10 +79,14 @@ def alone(team: Team, simulator: Simulator, pair: Found, everything: Sequence[Su
     label = pair.suspect.label
     tasks, whose = [], []
     for suspect in everything:
-        if suspect.label == label and suspect.law == pair.suspect.law:
+        is_same = suspect.law == pair.suspect.law
+        if suspect.label == label and (is_same or full.loose):
             old = suspect.all[0]
-            added = full.added[-1:] if old.added else ()
-            hypothesis = Hypothesis(old.factors, tuple(Added(item.effect, item.at, old.added[-1].name) for item in added), old.loose)
+            hypothesis = old
+            if old.added:
+                found, last = full.added[-1].effect, old.added[-1]
+                effect = found if is_same else with_values(last.effect, values_of(found))
+                hypothesis = Hypothesis(old.factors, (Added(effect, last.at, last.name),), old.loose)
             start = hypothesis.start(fitted.hypothesis.nominal_part(fitted.z))
             tasks.append(Task(hypothesis, start, None, CONVERGED, FINE, beat=rivalling(best.fitted)))
             whose.append(suspect)

@@ -18,7 +18,7 @@ from hdrive_mbs.diagnosis.second_cause import JOINED, LEFT, wants_second
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.team import Team
-from hdrive_mbs.diagnosis.verdict import left
+from hdrive_mbs.diagnosis.verdict import left, of_one_family
 
 
 class Together:
@@ -33,12 +33,12 @@ class Together:
         self._pairs: tuple[Found, ...] = ()
 
     def explain(self, single: Search) -> bool:
-        """Whether one of the pairs leaves next to nothing where no single cause does; the pairs are kept then."""
+        """Whether a pair that is not one phenomenon twice leaves next to nothing where no single cause does; the pairs are kept then."""
         labels = single.labels
         if not labels or not wants_second(self._null, labels[0], int(np.count_nonzero(self._simulator.fit))):
             return False
         pairs = joined(self._team, self._simulator, labels[0], labels[1 : JOINED + 1])
-        if not any(left(pair.fitted) < enough(self._null, LEFT) for pair in pairs):
+        if not any(left(pair.fitted) < enough(self._null, LEFT) and not of_one_family(pair) for pair in pairs):
             return False
         self._first, self._pairs = labels[0].fitted, tuple(pairs)
         return True

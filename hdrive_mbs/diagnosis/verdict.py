@@ -194,11 +194,11 @@ def _needed(first: Found, pair: Found, null_misfit: float) -> bool:
     if gain <= SECOND or before <= NOISE or after >= before:
         return False
     if before <= max(LITTLE, nearly_right(null_misfit)):
-        return takes_most(before, after) and (gain > COMPARABLE * first.log_odds or not _of_one_family(pair))
+        return takes_most(before, after) and (gain > COMPARABLE * first.log_odds or not of_one_family(pair))
     return math.log(max(after, 1.0)) < (1.0 - MORE) * math.log(before) or gain > COMPARABLE * first.log_odds
 
 
-def _of_one_family(pair: Found) -> bool:
+def of_one_family(pair: Found) -> bool:
     """Whether the two causes of a pair are laws of one phenomenon at two places."""
     families = [item.label[0] for item in pair.fitted.hypothesis.added]
     return len(families) > 1 and families[-1] in families[:-1]

@@ -215,6 +215,27 @@ def test_a_second_cause_is_tried_without_the_first(simulator: Simulator) -> None
     assert single.fitted.chi_fit == pytest.approx(pair.fitted.chi_fit, rel=0.02)
 
 
+def test_a_mass_on_a_spring_beside_a_wrong_inertia_is_tried_as_a_load_of_which_a_part_swings() -> None:
+    """The pair is nearly that, and the load holds more than its tolerance alone: a search from the law's own start does not come there."""
+    planted = hm.FlexibleInertia(share=0.4, natural_frequency=250.0, damping_ratio=0.05)
+    missing = Simulator(BENCH.trials(records((planted, "load"))[0]), 2.5e-4, 4)
+    factors = factors_of(BENCH)
+    tried = candidates(BENCH.scene, [hm.HiddenMode, hm.FlexibleInertia, hm.QuadraticDrag])
+    everything = suspects(Hypothesis(factors), {"load_inertia": ["load_inertia"]}, tried)
+    law = Added(hm.HiddenMode(inertia=0.3, natural_frequency=250.0, damping_ratio=0.05), "load", "hidden_mode")
+    both = Hypothesis(factors, (law,), {"load_inertia": 10.0})
+    [suspect] = [item for item in everything if item.law == "HiddenMode" and item.label[1] == "load"]
+    pair = Found(suspect, fit(missing, both, both.start(), steps=12))
+    first = fit(missing, Hypothesis(factors), Hypothesis(factors).start(), steps=2)
+    with Team(1) as team:
+        found = {item.suspect.law: item for item in alone(team, missing, pair, everything, Found(suspect, first))}
+    assert set(found) == {"HiddenMode", "FlexibleInertia"}
+    right = found["FlexibleInertia"].fitted
+    assert right.chi_fit < 1.1 < found["HiddenMode"].fitted.chi_fit
+    assert right.hypothesis.rescaled(right.z)[0].added[-1].effect.share == pytest.approx(0.4, rel=0.05)
+    assert not right.hypothesis.loose
+
+
 @pytest.mark.parametrize(("drop", "odds", "kind"), [(0.5e-4, 40.0, "none"), (2e-3, 40.0, "effect"), (2e-3, 12.0, "none")])
 def test_an_effect_needs_odds_and_a_gap_that_it_closes(simulator: Simulator, drop: float, odds: float, kind: str) -> None:
     """Long records give high odds to what the steps of an integration leave."""

@@ -166,6 +166,33 @@ def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_anything
     assert (search is None) is (exchanged is None)
 
 
+@pytest.mark.parametrize("second", [RIPPLE, Added(hm.ViscousDrag(coefficient=0.01), "motor", "drag_2")])
+def test_everything_is_looked_at_beside_the_first_where_the_same_phenomenon_elsewhere_is_all_that_is_known_to_explain_the_rest(
+    fitted: tuple[Simulator, Fitted], monkeypatch: pytest.MonkeyPatch, second: Added
+) -> None:
+    """Friction at both ends of a stiff shaft may stand for friction and drag."""
+    simulator, base = fitted
+    null = dataclasses.replace(base, cost=1e5, chi_fit=3000.0, chi_held=3000.0)
+    one, known, right = (
+        found(base, (DRAG,), 1.6, 60_000.0),
+        found(base, (DRAG, second), 1.03, 61_000.0),
+        found(base, (DRAG, RIPPLE), 1.005, 61_500.0),
+    )
+    asked: list[str] = []
+    monkeypatch.setattr(second_cause, "joined", lambda *some: [known])
+    monkeypatch.setattr(second_cause, "search", lambda *some, **more: asked.append("search") or Search(base, (right,)))
+    for name in ("swapped", "alone", "moved"):
+        monkeypatch.setattr(second_cause, name, lambda *some: [])
+    best_first = lambda team, coarse, some, first: tuple(sorted(some, key=lambda item: item.fitted.cost))  # noqa: E731
+    monkeypatch.setattr(second_cause, "contenders", best_first)
+    with Team(1) as team:
+        _, pairs, _ = second_cause.second_cause(
+            team, simulator, null, {}, [], Search(null, (one,)), (), (), lambda stage, done, total: None
+        )
+    assert asked == ([] if second is RIPPLE else ["search"])
+    assert pairs[0] is (known if second is RIPPLE else right)
+
+
 def test_of_two_looks_at_one_suspect_the_cheaper_one_counts(fitted: tuple[Simulator, Fitted]) -> None:
     hypothesis = Hypothesis(factors_of(BENCH), (DRAG,))
     one, two = (Suspect(("viscous_drag", at), "ViscousDrag", (hypothesis,), (hypothesis,)) for at in ("load", "motor"))

@@ -72,6 +72,17 @@ def test_pairs_are_asked_where_the_best_cause_leaves_something(
     assert asked.with_first(None) == ()
 
 
+def test_one_phenomenon_at_two_places_does_not_end_the_search_for_one_cause(
+    simulator: Simulator, plain: Fitted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    null = dataclasses.replace(plain, chi_fit=100.0, chi_held=100.0, cost=1e7)
+    elsewhere = Added(hm.ViscousDrag(coefficient=0.01), "motor", "drag_2")
+    one, other, both = found(plain, 5.0, DRAG), found(plain, 50.0, elsewhere), found(plain, 1.0, DRAG, elsewhere)
+    monkeypatch.setattr(together, "joined", lambda *some: [both])
+    with Team(1) as team:
+        assert not Together(team, simulator, null).explain(Search(null, (one, other)))
+
+
 @pytest.mark.parametrize("explained", [True, False])
 def test_nothing_is_looked_for_again_from_held_parameters_where_a_pair_explains_all(
     simulator: Simulator, plain: Fitted, monkeypatch: pytest.MonkeyPatch, explained: bool
