@@ -65,6 +65,13 @@ def test_the_nulls_of_their_own_are_told_as_they_came_out() -> None:
     assert told == f"{drive.format(' kept')} and {rotor.format('')}, together {both}"
 
 
+def test_the_pairs_of_their_own_are_told_as_they_came_out() -> None:
+    text = (ROOT / "docs" / "diagnosis.md").read_text("utf-8")
+    [told] = re.findall(r"^Pairs of their own on the drive bench, .+: both causes right in (.+)\.$", text, re.MULTILINE)
+    both = json.loads((OWN / "drive_pairs" / "results.json").read_text("utf-8"))["methods"]["diagnosis"]["both of two"]
+    assert told == "{} ({:.2f} to {:.2f})".format(share(both), *interval(both["right"], both["of"]))
+
+
 def test_the_documentation_leaves_out_no_set_since_the_first_it_names() -> None:
     """Of each bench the last ones without a gap: none that went badly is passed over."""
     for bench in ("drive", "rotor"):
