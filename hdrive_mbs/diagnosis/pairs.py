@@ -18,8 +18,10 @@ from hdrive_mbs.quantities import is_needed
 
 TOGETHER = 5
 """Joint steps of two causes that are put together."""
-MOVED, GOING = 8, 4
-"""Joint steps of a pair with a cause at another place, and how many of these pairs take them, the best after the first steps."""
+MOVED, GOING = 14, 4
+"""Joint steps of a pair with a cause at another place or another law, and how many of these pairs take them, the best after the first
+steps.  A drag in place of what had stood for it beside friction passed the other pair in its tenth (c16 of our own fourteenth drive set,
+labels open)."""
 CONTENDERS, NEARLY = 3, 0.01
 """Pairs that are fitted to the end at most, and share of what a second cause gains by which they may lie behind the best until then."""
 

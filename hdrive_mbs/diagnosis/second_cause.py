@@ -119,7 +119,7 @@ def second_cause(
         for item in others:
             more = search(team, coarse, item.fitted, groups, tried, depth=SHALLOW, report=partial(under, said, "first cause again"))
             found = contenders(team, coarse, [*found, *more.found], first)
-    found = _exchanged_in_place(team, coarse, null, found, first, everything)
+    found = _exchanged_in_place(team, coarse, found, first, everything)
     elsewhere = [] if team.deadline.passed("causes of the pair at other places") else moved(team, coarse, found, tried)
     pairs = contenders(team, coarse, [*found, *elsewhere], first)
     if pairs[0].suspect.label not in {item.suspect.label for item in others}:
@@ -128,15 +128,16 @@ def second_cause(
 
 
 def _exchanged_in_place(
-    team: Team, coarse: Simulator, null: Fitted, found: tuple[Found, ...], first: Found, everything: Sequence[Suspect]
+    team: Team, coarse: Simulator, found: tuple[Found, ...], first: Found, everything: Sequence[Suspect]
 ) -> tuple[Found, ...]:
-    """Where the best pair leaves much: with other laws of its causes, with other causes at their places, and with other laws of those."""
+    """Where the best pair leaves something, however strong its causes are: with other laws of them, with other causes at their places, and
+    with other laws of those."""
     told = None
     for what, others in (("other laws", with_other_laws), ("other causes", recast), ("other laws", with_other_laws)):
         causes = found[0].fitted.hypothesis.labels
         if others is with_other_laws and causes == told:
             continue
-        if left(found[0].fitted) <= enough(null, LEFT) or team.deadline.passed(f"{what} at the places of the pair"):
+        if left(found[0].fitted) <= LEFT or team.deadline.passed(f"{what} at the places of the pair"):
             break
         told = causes if others is with_other_laws else told
         found = contenders(team, coarse, [*found, *others(team, coarse, found, everything)], first)
