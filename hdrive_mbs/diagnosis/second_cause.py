@@ -26,7 +26,7 @@ from hdrive_mbs.diagnosis.verdict import LITTLE, left, of_one_family, takes_most
 LEFT = LITTLE
 """Mean square left by the best single cause, on what its fit saw and did not see, that is worth all that is done for a second one;
 more beside a strong one (``enough``).  In our own third drive set a lag beside a drag left 1.19 and 1.48 of 46, and was not looked for
-at 1.2."""
+at 1.2.  Also what the best pair has to leave for its causes to be exchanged in place, however strong they are."""
 SLIGHT = 1.03
 """Likewise, above which a second one is looked for at all: of 48 right single causes of our own rotor sets 9 to 14, opened, 42 leave
 1.014 at most in the search and six whose laws are not exact 1.06 and more (tests/unit/test_verdict_constants.py), and a mass that swings

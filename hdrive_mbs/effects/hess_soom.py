@@ -17,7 +17,8 @@ class HessSoomSliding:
 
     L(w) = T_C (1 + a tanh(w/w_a)) (1 + d/(1 + |w/w_S|^p))
 
-    Source: Hess, Soom, J. Tribology 112 (1990) 147, with p = 2; unequal senses are added, which a film may build up with the speed.
+    Source: Hess, Soom, J. Tribology 112 (1990) 147, with p = 2; that the senses are unequal, and come apart over a speed, is our own.
+    A small w_a, like the default, is a step through zero.
     """
 
     coulomb: float = parameter("N m", "sliding torque T_C", low=0.0, high=1e3, typical=(5e-3, 50.0))
@@ -26,7 +27,7 @@ class HessSoomSliding:
     stribeck_exponent: float = parameter("1", "p, shape of the drop", default=1.5, low=0.25, high=4.0, typical=(0.5, 2.5))
     asymmetry: float = parameter("1", "a, share by which forward friction is larger", default=0.0, low=-0.9, high=0.9, typical=(-0.3, 0.3))
     asymmetry_speed: float = parameter(
-        "rad/s", "speed w_a from which on the senses differ by all of it", default=1e-3, above=0.0, typical=(1e-3, 30.0)
+        "rad/s", "speed w_a over which the senses come apart: 76 % of it there", default=1e-3, above=0.0, typical=(1e-3, 30.0)
     )
 
     def sliding_torque(self, speed: Value) -> Value:

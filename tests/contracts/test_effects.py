@@ -185,9 +185,15 @@ EXAMPLES = {
         Example(TorqueRipple(amplitude=0.3, relative=0.1, order=6.0), "motor", ("amplitude", "relative")),
         Example(EccentricLoad(mass=4.0, radius=0.3, start_angle=0.5), "load", ("mass",)),
         Example(DahlFriction(coulomb=5.0, presliding=2e-3, exponent=1.5), "load", ("coulomb",)),
-        Example(LubricatedFriction(coulomb=5.0, drop=0.5, stribeck_speed=0.1, asymmetry=0.2, smoothing_speed=0.02), "load", ("coulomb",)),
         Example(
-            PreslidingFriction(coulomb=5.0, drop=0.5, stribeck_speed=0.1, asymmetry=0.2, presliding=2e-3, exponent=1.5),
+            LubricatedFriction(coulomb=5.0, drop=0.5, stribeck_speed=0.1, asymmetry=0.2, asymmetry_speed=0.3, smoothing_speed=0.02),
+            "load",
+            ("coulomb",),
+        ),
+        Example(
+            PreslidingFriction(
+                coulomb=5.0, drop=0.5, stribeck_speed=0.1, asymmetry=0.2, asymmetry_speed=0.3, presliding=2e-3, exponent=1.5
+            ),
             "load",
             ("coulomb",),
         ),

@@ -35,6 +35,10 @@ def fitted() -> tuple[Simulator, Fitted]:
     return simulator, fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=0)
 
 
+def cheapest_first(team: Team, coarse: Simulator, some: list[Found], first: Found) -> tuple[Found, ...]:
+    return tuple(sorted(some, key=lambda item: item.fitted.cost))
+
+
 def found(fitted: Fitted, added: tuple[Added, ...], leaves: float, odds: float) -> Found:
     """Causes that are said to leave so much."""
     hypothesis = Hypothesis(factors_of(BENCH), added)
@@ -166,6 +170,40 @@ def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_anything
     assert (search is None) is (exchanged is None)
 
 
+@pytest.mark.parametrize(
+    ("leaves", "recast_leaves", "stages"),
+    [
+        (1.2, 1.15, ["laws", "causes", "laws"]),  # the cause that came in place of another has laws of its own
+        (1.2, 1.05, ["laws", "causes"]),
+        (1.2, None, ["laws", "causes"]),  # nothing better came: its laws are known
+        (1.09, None, []),
+    ],
+)
+def test_laws_and_causes_of_a_pair_are_exchanged_as_long_as_it_leaves_something_however_strong_the_gap(
+    fitted: tuple[Simulator, Fitted], monkeypatch: pytest.MonkeyPatch, leaves: float, recast_leaves: float | None, stages: list[str]
+) -> None:
+    """Of a gap of 3000 a law that is nearly right leaves 1.27: what is enough to say nothing more is missing is no reason to keep it."""
+    simulator, base = fitted
+    null = dataclasses.replace(base, cost=1e5, chi_fit=3000.0, chi_held=3000.0)
+    assert nearly_right(3000.0) > leaves
+    other = Added(hm.QuadraticDrag(coefficient=0.01), "motor", "drag_2")
+    one, pair = found(base, (DRAG,), 1.6, 60_000.0), found(base, (DRAG, RIPPLE), leaves, 61_000.0)
+    better = [] if recast_leaves is None else [found(base, (DRAG, other), recast_leaves, 61_200.0)]
+    asked: list[str] = []
+    monkeypatch.setattr(second_cause, "joined", lambda *some: [pair])
+    for name in ("swapped", "alone", "moved"):
+        monkeypatch.setattr(second_cause, name, lambda *some: [])
+    monkeypatch.setattr(second_cause, "with_other_laws", lambda *some: asked.append("laws") or [])
+    monkeypatch.setattr(second_cause, "recast", lambda *some: asked.append("causes") or better)
+    monkeypatch.setattr(second_cause, "contenders", cheapest_first)
+    with Team(1) as team:
+        _, pairs, _ = second_cause.second_cause(
+            team, simulator, null, {}, [], Search(null, (one,)), (), (), lambda stage, done, total: None
+        )
+    assert asked == stages
+    assert pairs[0] is (better[0] if better else pair)
+
+
 @pytest.mark.parametrize("second", [RIPPLE, Added(hm.ViscousDrag(coefficient=0.01), "motor", "drag_2")])
 def test_everything_is_looked_at_beside_the_first_where_the_same_phenomenon_elsewhere_is_all_that_is_known_to_explain_the_rest(
     fitted: tuple[Simulator, Fitted], monkeypatch: pytest.MonkeyPatch, second: Added
@@ -183,8 +221,7 @@ def test_everything_is_looked_at_beside_the_first_where_the_same_phenomenon_else
     monkeypatch.setattr(second_cause, "search", lambda *some, **more: asked.append("search") or Search(base, (right,)))
     for name in ("swapped", "alone", "moved"):
         monkeypatch.setattr(second_cause, name, lambda *some: [])
-    best_first = lambda team, coarse, some, first: tuple(sorted(some, key=lambda item: item.fitted.cost))  # noqa: E731
-    monkeypatch.setattr(second_cause, "contenders", best_first)
+    monkeypatch.setattr(second_cause, "contenders", cheapest_first)
     with Team(1) as team:
         _, pairs, _ = second_cause.second_cause(
             team, simulator, null, {}, [], Search(null, (one,)), (), (), lambda stage, done, total: None
