@@ -140,6 +140,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.power_drag": ("PowerDrag",),
     "effects.ripple_spectrum": ("RippleSpectrum",),
     "effects.second_order_lag": ("SecondOrderLag",),
+    "effects.spread_slip_friction": ("SpreadSlipFriction",),
     "effects.spread_slip_hysteresis": ("SpreadSlipHysteresis",),
     "effects.presliding_friction": ("PreslidingFriction",),
     "effects.lubricated_friction": ("LubricatedFriction",),

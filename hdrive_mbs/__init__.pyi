@@ -202,6 +202,7 @@ from hdrive_mbs.effects.shaft_bow import ShaftBow as ShaftBow
 from hdrive_mbs.effects.shaft_kink import ShaftKink as ShaftKink
 from hdrive_mbs.effects.shaft_stiffness_asymmetry import ShaftStiffnessAsymmetry as ShaftStiffnessAsymmetry
 from hdrive_mbs.effects.soft_windup import SoftWindup as SoftWindup
+from hdrive_mbs.effects.spread_slip_friction import SpreadSlipFriction as SpreadSlipFriction
 from hdrive_mbs.effects.spread_slip_hysteresis import SpreadSlipHysteresis as SpreadSlipHysteresis
 from hdrive_mbs.effects.steep_crack import SteepCrack as SteepCrack
 from hdrive_mbs.effects.stiffness_asymmetry import StiffnessAsymmetry as StiffnessAsymmetry

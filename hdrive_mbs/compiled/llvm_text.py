@@ -82,12 +82,17 @@ class Text:
         return self.intrinsic("fma", a, b, c)
 
     def polynomial(self, x: str, coefficients: tuple[float, ...]) -> str:
-        """sum_k c[k] x^k by Horner's rule."""
-        *lower, top = coefficients
-        value = self.number(top)
-        for c in reversed(lower):
-            value = self.fma(value, x, self.number(c))
-        return value
+        """sum_k c[k] x^k by Estrin's scheme: pairs c[k] + c[k+1] x, then pairs of these with x^2, and so on.
+
+        As many products as by Horner's rule and a few squares, but a chain of as many steps as the logarithm of their number says: a
+        run waits for the chains of its powers, not for the processor.
+        """
+        terms = [self.number(c) for c in coefficients]
+        while len(terms) > 1:
+            pairs = [self.fma(terms[k + 1], x, terms[k]) for k in range(0, len(terms) - 1, 2)]
+            terms = [*pairs, *terms[2 * len(pairs) :]]
+            x = self.mul(x, x) if len(terms) > 1 else x
+        return terms[0]
 
     def bits(self, a: str) -> str:
         """The bits of a number as a whole one."""

@@ -1,4 +1,11 @@
-"""Jacobians of residuals by differences, each column run through the records that it shows in."""
+"""Jacobians of residuals by differences, each column run through the records that it shows in.
+
+A forward difference over h is wrong by h/2 of the second derivative.  A change of 3 % of an inertia changes residuals by a root of their
+sum of squares of 40,000, and its column by half of itself, while some directions that all parameters span together bear 2.5 in place
+of 40,000: a hundredth of such a step makes them point elsewhere, and fits crawl along bent valleys (of our own fifteenth drive set, c08,
+labels open, ended up to 674 above the bottom).  Short ones lose them in rounding, which a motor's angle gathers over a record:
+the bottom was reached with differences that change the residuals by 0.1 to 1, and not with a third of that.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +22,12 @@ from hdrive_mbs.diagnosis.simulator import AT_ONCE, Simulator
 FloatArray = npt.NDArray[np.float64]
 
 CHANGE, CAUTIOUS = 5.0, 0.15
-"""Change of the residuals (root of their sum of squares) that a difference makes, and share of the longest step it may take."""
+"""Change of the residuals (root of their sum of squares) that a difference along an axis of a metric makes, and share of the longest step
+it may take."""
+SHORT = 0.3
+"""The same of a difference along a coordinate, where it is known how much that shows."""
+FIRST, SHORTEST = 3e-3, 1e-4
+"""Shares of a coordinate's ``step``: of a difference where that is not known, and of the shortest one."""
 
 
 def jacobian(
@@ -25,6 +37,7 @@ def jacobian(
     residuals: FloatArray,
     metric: FloatArray | None = None,
     unseen: Sequence[Trials] = (),
+    sizes: FloatArray | None = None,
 ) -> FloatArray:
     """d residuals/dz over the fitted samples, shape (n, size), by differences; a column that cannot be run is zero.
 
@@ -33,9 +46,10 @@ def jacobian(
         shows most.
     unseen : without a metric, of each coordinate the trials in which it is not believed to show.  That is checked for all of them at
         once; the column is zero there.
+    sizes : without a metric, what a unit of each coordinate changed the residuals by at a point nearby (root of the sum of squares)
     """
     if metric is None:
-        return _Differences(simulator, hypothesis, z, residuals).columns(unseen or [frozenset()] * len(z))
+        return _Differences(simulator, hypothesis, z, residuals, sizes).columns(unseen or [frozenset()] * len(z))
     base = residuals[simulator.fit]
     directions = _axes(hypothesis, z, metric)
     points = _turned_where_clipped(hypothesis, z, directions)
@@ -72,10 +86,12 @@ def unseen_in(
 class _Differences:
     """Columns of a Jacobian along the coordinates, from a point."""
 
-    def __init__(self, simulator: Simulator, hypothesis: Hypothesis, z: FloatArray, residuals: FloatArray) -> None:
+    def __init__(
+        self, simulator: Simulator, hypothesis: Hypothesis, z: FloatArray, residuals: FloatArray, sizes: FloatArray | None
+    ) -> None:
         self._simulator, self._hypothesis, self._z, self._residuals = simulator, hypothesis, z, residuals
         self._fitted = residuals[simulator.fit]
-        self._directions = np.diag(hypothesis.steps(z))
+        self._directions = np.diag(lengths(hypothesis.steps(z), sizes))
         self._points = _turned_where_clipped(hypothesis, z, self._directions)
         self._rows = np.zeros((len(z), len(self._fitted)))
         self._all = frozenset(range(len(simulator.spans)))
@@ -122,6 +138,14 @@ class _Differences:
         moved[some] += (moves * np.sign(np.diag(self._directions)))[some]
         [item] = simulator.residuals(hypothesis, [hypothesis.clipped(moved)], self._all - trials, [self._residuals])
         return item is not None and is_unseen(item[simulator.fit] - self._fitted, weights, self._fitted)
+
+
+def lengths(steps: FloatArray, sizes: FloatArray | None) -> FloatArray:
+    """Of differences along coordinates with these steps, where a unit of each changes the residuals by this much, if that is known."""
+    if sizes is None:
+        return FIRST * steps
+    known = sizes > 0.0
+    return np.where(known, np.clip(SHORT / np.where(known, sizes, 1.0), SHORTEST * steps, steps), FIRST * steps)
 
 
 def _turned_where_clipped(hypothesis: Hypothesis, z: FloatArray, directions: FloatArray) -> list[FloatArray]:

@@ -106,12 +106,13 @@ def fit(
     damping, converged, done = 1.0, len(z) == 0, 0  # nothing to search: it is there
     curvature = np.zeros((len(z), len(z)))
     columns: FloatArray | None = None
+    sizes: FloatArray | None = None  # of the columns that were known last
     fresh = True  # of differences at this very point
     followed = False  # whether curved steps were tried with it
     unseen = believed(simulator, hypothesis)
     for _ in range(0 if converged else steps):
         if columns is None:
-            columns, fresh, followed = jacobian(simulator, hypothesis, z, residuals, unseen=unseen), True, False
+            columns, fresh, followed = jacobian(simulator, hypothesis, z, residuals, unseen=unseen, sizes=sizes), True, False
             unseen = list(unseen_in(simulator, hypothesis, z, residuals, columns)) if len(simulator.spans) > 1 else unseen
         weights = simulator.blocks.weights(residuals[mask])
         systems = {}
@@ -119,6 +120,7 @@ def fit(
             squares, slope = normal_equations(columns, weights**power, residuals[mask])
             systems[power] = squares, slope + precisions * z
         curvature = systems[1.0][0] if fresh else curvature
+        sizes = np.sqrt(np.diag(systems[1.0][0]))
         points = _proposals(hypothesis, z, precisions, systems, damping)
         squares, slope = systems[1.0]
         normal = squares + np.diag(precisions)

@@ -23,7 +23,7 @@ from hdrive_mbs.diagnosis.scans import fits_from, scan, worth_a_scan
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.stages import Report
-from hdrive_mbs.diagnosis.suspects import Label, Suspect, simplest, suspects
+from hdrive_mbs.diagnosis.suspects import Label, Suspect, at_first, simplest, suspects
 from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, NEAR, Found, Task, cheapest, further, rivalling, run_task, scored, those_that_ran
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
@@ -211,7 +211,7 @@ class _Work:
         far : whether a parameter may be so far off that looks do not see it, and is tried along its range where the best leaves something
         """
         screen = screen_from(self.simulator, model)
-        everything = self._begun(everything, model)
+        everything = self._begun(at_first(everything), model)
         simple = simplest(everything)
         plain = Suspect(("none", ""), "none", (model.hypothesis,), (model.hypothesis,))
         first = self._looked(screen, [plain, *simple], [item.first for item in (plain, *simple)], "looking at candidates")

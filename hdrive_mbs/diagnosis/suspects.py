@@ -37,6 +37,11 @@ class Suspect:
         return self.law != PARAMETER and is_periodic(self.first[0])
 
     @property
+    def is_finer(self) -> bool:
+        """Whether it is a law that waits for the others of its label."""
+        return self.law != PARAMETER and type(self.first[0].added[-1].effect).finer
+
+    @property
     def is_looked_at_whole(self) -> bool:
         """Whether the first look begins at every start already."""
         return len(self.first) == len(self.all) and all(_begins_alike(a, b) for a, b in zip(self.first, self.all, strict=True))
@@ -88,6 +93,12 @@ def simplest(everything: Sequence[Suspect]) -> list[Suspect]:
         if known is None or _before(suspect) < _before(known):
             best[suspect.label] = suspect
     return list(best.values())
+
+
+def at_first(everything: Sequence[Suspect]) -> list[Suspect]:
+    """Those that a search looks at from the beginning: finer laws wait until the others of their label leave something."""
+    others = {suspect.label for suspect in everything if not suspect.is_finer}
+    return [suspect for suspect in everything if not suspect.is_finer or suspect.label not in others]
 
 
 def _before(suspect: Suspect) -> tuple[bool, int]:

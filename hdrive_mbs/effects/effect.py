@@ -71,6 +71,8 @@ class Effect(Described, ABC):
     does not show, so a search begins at those that stand out in what is left."""
     leads: ClassVar[bool] = False
     """Whether it stands for its family in a first look, in place of the law with the fewest numbers to search."""
+    finer: ClassVar[bool] = False
+    """Whether a search tries it only where the other laws of its family leave something at the place they were found at."""
     decisive: ClassVar[tuple[str, ...]] = ()
     """Those of them of which already a first look takes every value: away from the right one the effect does not show."""
     half_turn: ClassVar[frozenset[str]] = frozenset()

@@ -6,10 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from hdrive_mbs.effects.effect import MemoryTwistEffect
-from hdrive_mbs.effects.fast_sliding import FASTEST_RATE, followed_share, mixed
+from hdrive_mbs.effects.fast_sliding import FASTEST_RATE
+from hdrive_mbs.effects.slider import Slider
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter, table
@@ -54,39 +53,24 @@ class MaxwellSlipHysteresis(MemoryTwistEffect):
                 "each element needs one of both, and there must be at least one."
             )
 
-    def _elements(self) -> dict[str, tuple[float, float]]:
-        """Stiffness and limit of each element that can carry torque."""
+    def _elements(self) -> dict[str, tuple[Slider, float]]:
+        """Each element that can carry torque, with its limit."""
         pairs = enumerate(zip(self.stiffness, self.torque_limit, strict=True), start=1)
-        return {f"torque_{k}": (stiffness, limit) for k, (stiffness, limit) in pairs if stiffness > 0.0 and limit > 0.0}
+        return {
+            f"torque_{k}": (Slider(stiffness, self.rounding, self.fastest_rate), limit)
+            for k, (stiffness, limit) in pairs
+            if stiffness > 0.0 and limit > 0.0
+        }
 
     def states(self) -> Mapping[str, str]:
         return dict.fromkeys(self._elements(), "N m")
 
     def state_rate(self, name: str, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
-        stiffness, limit = self._elements()[name]
-        slip = self._slip(state[name], limit, rate)
-        share = self._share(name, rate)
-        if self.rounding > 0.0:
-            share = np.where(slip > 0.0, self._share(name, rate / self.rounding), share)
-        return share * stiffness * rate * (1.0 - slip)
-
-    def _share(self, name: str, rate: Value) -> Value:
-        stiffness, limit = self._elements()[name]
-        return followed_share(np.abs(rate) * (stiffness / limit), self.fastest_rate)
-
-    def _slip(self, torque: Value, limit: float, rate: Value) -> Value:
-        size = np.abs(torque)
-        if self.rounding == 0.0:
-            slip = np.where(size >= limit, 1.0, 0.0)
-        else:
-            slip = np.maximum((size - (1.0 - self.rounding) * limit) / (self.rounding * limit), 0.0)
-        return np.where(rate * torque > 0.0, slip, 0.0)
+        slider, limit = self._elements()[name]
+        return slider.state_rate(state[name], limit, rate)
 
     def torque(self, time: Value, twist: Value, rate: Value, state: Mapping[str, Value]) -> Value:
-        return sum(
-            mixed(self._share(name, rate), np.clip(state[name], -limit, limit), limit, rate)
-            for name, (_, limit) in self._elements().items()
-        )
+        return sum(slider.torque(state[name], limit, rate) for name, (slider, limit) in self._elements().items())
 
     def stored(self, state: Mapping[str, Value]) -> Value:
-        return sum(state[name] * state[name] / (2.0 * stiffness) for name, (stiffness, _) in self._elements().items())
+        return sum(slider.stored(state[name]) for name, (slider, _) in self._elements().items())

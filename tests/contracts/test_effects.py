@@ -76,6 +76,7 @@ from hdrive_mbs.effects.sensor_offset import SensorOffset
 from hdrive_mbs.effects.sensor_quantisation import SensorQuantisation
 from hdrive_mbs.effects.series_compliance import SeriesCompliance
 from hdrive_mbs.effects.soft_windup import SoftWindup
+from hdrive_mbs.effects.spread_slip_friction import SpreadSlipFriction
 from hdrive_mbs.effects.spread_slip_hysteresis import SpreadSlipHysteresis
 from hdrive_mbs.effects.stiffness_asymmetry import StiffnessAsymmetry
 from hdrive_mbs.effects.stiffness_variation import StiffnessVariation
@@ -193,6 +194,13 @@ EXAMPLES = {
         Example(
             PreslidingFriction(
                 coulomb=5.0, drop=0.5, stribeck_speed=0.1, asymmetry=0.2, asymmetry_speed=0.3, presliding=2e-3, exponent=1.5
+            ),
+            "load",
+            ("coulomb",),
+        ),
+        Example(
+            SpreadSlipFriction(
+                coulomb=5.0, drop=0.5, stribeck_speed=0.1, asymmetry=0.2, asymmetry_speed=0.3, presliding=2e-3, spread=4.0, rounding=0.5
             ),
             "load",
             ("coulomb",),

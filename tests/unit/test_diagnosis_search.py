@@ -34,7 +34,7 @@ from hdrive_mbs.diagnosis.search import ENOUGH, Depth, Search, _Work, fit_nomina
 from hdrive_mbs.diagnosis.second_cause import slight, wants_second
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.starts import Starts
-from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, simplest, suspects
+from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, at_first, simplest, suspects
 from hdrive_mbs.diagnosis.tasks import FIRST, Found, Task, proven, run_task, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.verdict import judge
@@ -587,6 +587,22 @@ def test_other_laws_of_the_best_label_begin_with_its_values(simulator: Simulator
     assert other_laws([parameter], base, everything) == []
     assert [item.hypothesis for _, item in unfinished([dahl])] == [hypothesis]
     assert unfinished([dataclasses.replace(dahl, fitted=dataclasses.replace(fitted, converged=True))]) == []
+
+
+def test_a_finer_law_waits_until_the_others_of_its_label_leave_something(simulator: Simulator) -> None:
+    def tried(*kinds: type[Effect]) -> list[Suspect]:
+        return suspects(Hypothesis(factors_of(BENCH)), {"inertia": ["load"]}, candidates(BENCH.scene, kinds))
+
+    everything = tried(hm.DahlFriction, hm.SpreadSlipFriction)
+    assert {item.law for item in at_first(everything)} == {"DahlFriction", "parameter"}
+    alone = tried(hm.SpreadSlipFriction)
+    assert at_first(alone) == alone  # what a user asks for alone is looked at
+    hypothesis = Hypothesis(factors_of(BENCH), (Added(hm.DahlFriction(coulomb=0.7, presliding=2e-3), "load", "drag"),))
+    fitted = fit(simulator, hypothesis, hypothesis.start(), steps=0)
+    dahl = Found(Suspect(("friction", "load"), "DahlFriction", (hypothesis,), (hypothesis,)), fitted)
+    asked = other_laws([dahl], left_with(simulator, cost=1.0, chi_fit=5.0), everything)
+    assert {suspect.law for suspect, _ in asked} == {"SpreadSlipFriction"}
+    assert [task.hypothesis.added[-1].effect.presliding for _, task in asked] == pytest.approx([2e-3] * len(asked))
 
 
 def test_a_fit_beside_a_leading_one_is_given_up_early_where_it_is_hopeless() -> None:

@@ -226,6 +226,7 @@ SLIDING: tuple[tuple[Any, str, float], ...] = (
     (hm.DahlFriction(coulomb=0.2, presliding=4e-3, exponent=2.0), "z", 200.0),
     (hm.PreslidingFriction(coulomb=0.2, drop=0.5, stribeck_speed=5.0, asymmetry=0.2, presliding=4e-3), "torque", 200.0),
     (hm.PreslidingFriction(coulomb=0.2, drop=0.5, stribeck_speed=5.0, presliding=4e-3, exponent=2.0), "torque", 200.0),
+    (hm.SpreadSlipFriction(coulomb=0.2, drop=0.5, stribeck_speed=5.0, asymmetry=0.2, presliding=4e-3), "torque_2", 200.0),
     (hm.BoucWenHysteresis(torque_limit=5.0, yield_twist=2e-5, exponent=1.5, shape=0.7), "z", 1.0),
     (hm.DahlHysteresis(torque_limit=5.0, yield_twist=2e-5, exponent=1.7), "z", 1.0),
     (hm.MaxwellSlipHysteresis(stiffness=(1e5,), torque_limit=(2.0,)), "torque_1", 1.0),
@@ -243,6 +244,8 @@ def limit_of(law: Any, name: str, speed: float) -> float:
         return math.copysign(1.0, speed)
     if isinstance(law, hm.LuGreFriction | hm.PreslidingFriction):
         return math.copysign(float(law.sliding_torque(speed)), speed)
+    if isinstance(law, hm.SpreadSlipFriction):
+        return math.copysign(float(law.sliding_torque(speed)) / 4.0, speed)
     elements = law if isinstance(law, hm.MaxwellSlipHysteresis) else law.elements
     return math.copysign(elements.torque_limit[int(name[-1]) - 1], speed)
 
@@ -321,6 +324,7 @@ def in_noise(network: Network, step: float) -> dict[str, np.ndarray]:
         (hm.LuGreFriction(coulomb=0.12, drop=0.76, stribeck_speed=4.7, stiffness=30.0, damping=0.02), "motor"),
         (hm.PreslidingFriction(coulomb=0.12, drop=0.76, stribeck_speed=4.7, presliding=4e-3, exponent=1.7), "wave_generator"),
         (hm.DahlFriction(coulomb=5.0, presliding=4e-4, exponent=1.5), "load"),
+        (hm.SpreadSlipFriction(coulomb=5.0, drop=0.4, stribeck_speed=0.1, presliding=6e-4, spread=2.0), "load"),
         (hm.BoucWenHysteresis(torque_limit=5.4, yield_twist=3e-4), "gear"),
         (hm.SpreadSlipHysteresis(torque_limit=5.4, slip_twist=3e-4), "gear"),
         (hm.MeshPreslidingFriction(loss_factor=0.25, rounding_torque=1.0, drop=0.1), "gear"),
@@ -427,6 +431,53 @@ def test_friction_of_both_senses_may_come_apart_with_the_speed() -> None:
     law = hm.PreslidingFriction(coulomb=5.0, asymmetry=0.2, asymmetry_speed=3.0, presliding=1e-3)
     # tanh(1) = 0.76159, tanh(1/10) = 0.099668
     assert law.sliding_torque(np.array([3.0, -3.0, 0.3, 300.0])) == pytest.approx([5.76159, 4.23841, 5.099668, 6.0], rel=1e-6)
+
+
+def moved(law: hm.SpreadSlipFriction, states: dict[str, float], angle: float, speed: float) -> dict[str, float]:
+    """The states after a slow motion over an angle, in small steps."""
+    steps = 4000
+    for _ in range(steps):
+        rates = {name: float(law.state_rate(name, 0.0, 0.0, speed, states)) for name in states}
+        states = {name: value + rates[name] * abs(angle / speed) / steps for name, value in states.items()}
+    return states
+
+
+def test_friction_of_sliders_turns_over_in_pieces_and_closes_its_inner_loops() -> None:
+    # q = 16: slip angles x_p (1/8, 1/2, 2, 8), limits of 2 N m and so stiffnesses of 16, 4, 1, 1/4 kN m/rad
+    law = hm.SpreadSlipFriction(coulomb=8.0, presliding=1e-3, spread=16.0, rounding=0.01, fastest_rate=1e9)
+    virgin = moved(law, dict.fromkeys(law.states(), 0.0), 1e-3, 0.01)
+    # two slip at 2 N m each, 1 kN m/rad 1e-3 rad and a quarter of it
+    assert float(law.torque(0.0, 0.0, 0.01, virgin)) == pytest.approx(-(2.0 + 2.0 + 1.0 + 0.25), rel=2e-3)
+    assert law.stored(virgin) == pytest.approx(0.5 * (4.0 / 16e3 + 4.0 / 4e3 + 1.0 / 1e3 + 0.0625 / 250.0), rel=5e-3)
+    # Masing: back by 0.2e-3 the torque falls by twice the virgin course at 0.1e-3, (16 + 4 + 1 + 1/4) 0.2
+    back = moved(law, virgin, 0.2e-3, -0.01)
+    assert float(law.torque(0.0, 0.0, -0.01, back)) == pytest.approx(-(5.25 - 4.25), rel=1e-2)
+    # and forth again it meets where it left, which Dahl's law misses
+    forth = moved(law, back, 0.2e-3, 0.01)
+    assert float(law.torque(0.0, 0.0, 0.01, forth)) == pytest.approx(-5.25, abs=0.02)  # the corner of one is rounded by 1 % of 2 N m
+
+
+def test_friction_of_sliders_follows_the_sliding_torque_and_gives_way_where_it_falls() -> None:
+    law = hm.SpreadSlipFriction(coulomb=8.0, drop=0.5, stribeck_speed=2.0, stribeck_exponent=2.0, asymmetry=0.1, presliding=1e-3)
+    # T_C (1 +- a)(1 + d/(1 + 1)) at the speed of the drop
+    for speed, size in ((2.0, 8.0 * 1.1 * 1.25), (-2.0, 8.0 * 0.9 * 1.25)):
+        full = dict.fromkeys(law.states(), math.copysign(8.0 * 1.5 / 4.0, speed))  # as large as it ever gets
+        assert float(law.torque(0.0, 0.0, speed, full)) == pytest.approx(-math.copysign(size, speed), rel=1e-12)
+        assert all(float(law.state_rate(name, 0.0, 0.0, speed, full)) * speed < 0.0 for name in full)
+        # of what is put in and what the springs give heat comes, |v| (L + |T| (s - 1)) of each as slider.py says, s = (|T| - (1 - r) L)/(r L)
+        followed = law.replacing(fastest_rate=1e9)
+        given = -sum(full[name] * float(followed.state_rate(name, 0.0, 0.0, speed, full)) / k for name, k in stiffnesses(law).items())
+        torque, limit, r = 3.0, size / 4.0, law.rounding
+        slip = (torque - (1.0 - r) * limit) / (r * limit)
+        assert size * abs(speed) + given == pytest.approx(4.0 * abs(speed) * (limit + torque * (slip - 1.0)), rel=1e-9)
+    assert law.states() == dict.fromkeys(("torque_1", "torque_2", "torque_3", "torque_4"), "N m")
+    assert law.replacing(coulomb=0.0).states() == {}
+
+
+def stiffnesses(law: hm.SpreadSlipFriction) -> dict[str, float]:
+    """Of its elements [N m/rad]: k = T_C/(4 x_i), x_i = x_p q^((2 i - 5)/4)."""
+    angles = [law.presliding * law.spread ** (k / 4.0) for k in (-3, -1, 1, 3)]
+    return {f"torque_{k}": law.coulomb / 4.0 / angle for k, angle in enumerate(angles, start=1)}
 
 
 def test_lubricated_friction_slides_at_a_torque_that_drops_and_rises_from_zero_with_the_speed() -> None:

@@ -150,6 +150,7 @@ EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.ThermalDrift(viscous_change=-0.1, time_constant=10.0), "load"),
     (hm.PreslidingFriction(coulomb=1.0, presliding=1e-3, drop=0.3), "load"),
     (hm.LubricatedFriction(coulomb=1.0, smoothing_speed=0.1, drop=0.3), "load"),
+    (hm.SpreadSlipFriction(coulomb=1.0, presliding=1e-3, spread=2.0), "load"),
     (hm.MeshPreslidingFriction(loss_factor=0.1, stiffness=30.0), "gear"),
     (hm.PowerDrag(drag=0.2, exponent=1.75), "load"),
     (hm.DahlHysteresis(torque_limit=2.0, yield_twist=1e-4), "gear"),
