@@ -590,7 +590,7 @@ def test_other_laws_of_the_best_label_begin_with_its_values(simulator: Simulator
 
 
 def test_a_finer_law_waits_until_the_others_of_its_label_leave_something(simulator: Simulator) -> None:
-    def tried(*kinds: type[Effect]) -> list[Suspect]:
+    def tried(*kinds: type[hm.Effect]) -> list[Suspect]:
         return suspects(Hypothesis(factors_of(BENCH)), {"inertia": ["load"]}, candidates(BENCH.scene, kinds))
 
     everything = tried(hm.DahlFriction, hm.SpreadSlipFriction)

@@ -464,7 +464,7 @@ def test_friction_of_sliders_follows_the_sliding_torque_and_gives_way_where_it_f
         full = dict.fromkeys(law.states(), math.copysign(8.0 * 1.5 / 4.0, speed))  # as large as it ever gets
         assert float(law.torque(0.0, 0.0, speed, full)) == pytest.approx(-math.copysign(size, speed), rel=1e-12)
         assert all(float(law.state_rate(name, 0.0, 0.0, speed, full)) * speed < 0.0 for name in full)
-        # of what is put in and what the springs give heat comes, |v| (L + |T| (s - 1)) of each as slider.py says, s = (|T| - (1 - r) L)/(r L)
+        # what is put in and what the springs give becomes heat, |v| (L + |T| (s - 1)) of each, s = (|T| - (1 - r) L)/(r L): slider.py
         followed = law.replacing(fastest_rate=1e9)
         given = -sum(full[name] * float(followed.state_rate(name, 0.0, 0.0, speed, full)) / k for name, k in stiffnesses(law).items())
         torque, limit, r = 3.0, size / 4.0, law.rounding
