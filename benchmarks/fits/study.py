@@ -1,4 +1,4 @@
-"""The right law at the right place, fitted from where a search begins: by three ways, to the end."""
+"""The right law at the right place, fitted from where a search begins: by four ways, to the end."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from benchmarks.machine import machine as about
 from benchmarks.withheld.make import make_set
 from benchmarks.withheld.methods import bench_of, records_of
 from benchmarks.withheld.names import names_of
+from hdrive_mbs.diagnosis import differences
 from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.curved import Valley
 from hdrive_mbs.diagnosis.diagnose import EVERY, factors_of
@@ -34,7 +35,7 @@ from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE
 FloatArray = npt.NDArray[np.float64]
 
 CAUSES = {
-    "drive": ("hysteresis_flexspline", "coupling_backlash", "lost_motion", "friction_mesh_load", "hidden_mode_load"),
+    "drive": ("hysteresis_flexspline", "coupling_backlash", "lost_motion", "friction_mesh_load", "hidden_mode_load", "quadratic_drag"),
     "rotor": ("parameter_bearing_stiffness", "bearing_clearance", "crack", "rub", "looseness", "bearing_cross_coupling"),
 }
 """Names of the generator, by bench: what bends valleys (springs that parameters imitate) and what has corners."""
@@ -118,6 +119,12 @@ def straight(simulator: Simulator, hypothesis: Hypothesis, start: FloatArray) ->
         return fit(simulator, hypothesis, start, steps=CONVERGED, share=FINE).z
 
 
+def with_long_differences(simulator: Simulator, hypothesis: Hypothesis, start: FloatArray) -> FloatArray:
+    """The same fit with differences as long as the coordinates' steps, as it was before differences.py shortened them."""
+    with patch.object(differences, "lengths", lambda steps, _: steps):
+        return fit(simulator, hypothesis, start, steps=CONVERGED, share=FINE).z
+
+
 def scipys(simulator: Simulator, hypothesis: Hypothesis, start: FloatArray) -> FloatArray:
     """Trust region reflective of scipy on the plain squares, with the same Jacobian and priors and the same relative change as its end.
 
@@ -148,5 +155,10 @@ def scipys(simulator: Simulator, hypothesis: Hypothesis, start: FloatArray) -> F
     return hypothesis.clipped(found.x)
 
 
-WAYS: dict[str, Callable[[Simulator, Hypothesis, FloatArray], FloatArray]] = {"curved": curved, "straight": straight, "scipy": scipys}
+WAYS: dict[str, Callable[[Simulator, Hypothesis, FloatArray], FloatArray]] = {
+    "curved": curved,
+    "straight": straight,
+    "long": with_long_differences,
+    "scipy": scipys,
+}
 """Name of a way -> function of simulator, hypothesis and start that returns where it ended."""
