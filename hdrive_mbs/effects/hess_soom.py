@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,9 @@ import numpy as np
 from hdrive_mbs.effects.speed_growth import grown
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
+
+SPEED_STARTS: Mapping[str, tuple[float, ...]] = {"stribeck_speed": (0.1, 5.0), "asymmetry_speed": (1.0,)}
+"""Speeds from which searches of the laws that have it begin."""
 
 
 @dataclass(frozen=True, kw_only=True)

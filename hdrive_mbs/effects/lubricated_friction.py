@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from hdrive_mbs.effects.effect import TorqueEffect
-from hdrive_mbs.effects.hess_soom import HessSoomSliding
+from hdrive_mbs.effects.hess_soom import SPEED_STARTS, HessSoomSliding
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
 
@@ -30,11 +30,7 @@ class LubricatedFriction(HessSoomSliding, TorqueEffect):
     family: ClassVar[str] = "friction"
     dissipative: ClassVar[bool] = True
     signature: ClassVar[str] = "torque against the motion that turns over with the speed, larger at low speed and in one sense"
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {
-        "smoothing_speed": (0.01, 0.3),
-        "stribeck_speed": (0.1, 5.0),
-        "asymmetry_speed": (1.0,),
-    }
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"smoothing_speed": (0.01, 0.3), **SPEED_STARTS}
 
     def torque(self, time: Value, angle: Value, speed: Value) -> Value:
         return -np.tanh(speed / self.smoothing_speed) * self.sliding_torque(speed)

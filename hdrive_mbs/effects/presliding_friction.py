@@ -11,7 +11,7 @@ import numpy as np
 from hdrive_mbs.effects.build_up import secant
 from hdrive_mbs.effects.effect import MemoryTorqueEffect
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE, followed_share, mixed
-from hdrive_mbs.effects.hess_soom import HessSoomSliding
+from hdrive_mbs.effects.hess_soom import SPEED_STARTS, HessSoomSliding
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
 
@@ -41,11 +41,7 @@ class PreslidingFriction(HessSoomSliding, MemoryTorqueEffect):
     signature: ClassVar[str] = (
         "torque against the motion that turns over within a small angle after each reversal, larger at low speed and in one sense"
     )
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {
-        "presliding": (5e-4, 5e-3),
-        "stribeck_speed": (0.1, 5.0),
-        "asymmetry_speed": (1.0,),
-    }
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"presliding": (5e-4, 5e-3), **SPEED_STARTS}
 
     def states(self) -> Mapping[str, str]:
         return {"torque": "N m"} if self.coulomb > 0.0 else {}

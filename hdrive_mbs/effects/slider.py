@@ -54,3 +54,8 @@ class Slider:
         else:
             slip = np.maximum((size - (1.0 - self.rounding) * limit) / (self.rounding * limit), 0.0)
         return np.where(rate * torque > 0.0, slip, 0.0)
+
+
+def spread_places(middle: float, spread: float, count: int) -> list[float]:
+    """Slip places that grow by a constant factor from about middle/spread to middle spread: middle spread^((2 i - 1)/count - 1), i = 1.."""
+    return [middle * spread ** ((2 * k + 1) / count - 1.0) for k in range(count)]

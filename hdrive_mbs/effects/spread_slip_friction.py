@@ -8,8 +8,8 @@ from typing import ClassVar
 
 from hdrive_mbs.effects.effect import MemoryTorqueEffect
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE
-from hdrive_mbs.effects.hess_soom import HessSoomSliding
-from hdrive_mbs.effects.slider import Slider
+from hdrive_mbs.effects.hess_soom import SPEED_STARTS, HessSoomSliding
+from hdrive_mbs.effects.slider import Slider, spread_places
 from hdrive_mbs.effects.slider_hysteresis import ELEMENTS
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
@@ -44,18 +44,12 @@ class SpreadSlipFriction(HessSoomSliding, MemoryTorqueEffect):
     signature: ClassVar[str] = (
         "torque against the motion that turns over in pieces within a small angle after each reversal, with closed inner loops"
     )
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {
-        "presliding": (5e-4, 5e-3),
-        "stribeck_speed": (0.1, 5.0),
-        "asymmetry_speed": (1.0,),
-        "spread": (2.5,),
-    }
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"presliding": (5e-4, 5e-3), **SPEED_STARTS, "spread": (2.5,)}
 
     def _sliders(self) -> dict[str, Slider]:
         if self.coulomb == 0.0:
             return {}
-        angles = [self.presliding * self.spread ** ((2 * k + 1) / ELEMENTS - 1.0) for k in range(ELEMENTS)]
-        stiffnesses = [self.coulomb / ELEMENTS / angle for angle in angles]
+        stiffnesses = [self.coulomb / ELEMENTS / angle for angle in spread_places(self.presliding, self.spread, ELEMENTS)]
         return {f"torque_{k}": Slider(value, self.rounding, self.fastest_rate) for k, value in enumerate(stiffnesses, start=1)}
 
     def states(self) -> Mapping[str, str]:

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from hdrive_mbs.effects.fast_sliding import FASTEST_RATE
 from hdrive_mbs.effects.maxwell_slip_hysteresis import MaxwellSlipHysteresis
+from hdrive_mbs.effects.slider import spread_places
 from hdrive_mbs.effects.slider_hysteresis import ELEMENTS, SliderHysteresis
 from hdrive_mbs.quantities import parameter
 
@@ -37,7 +38,7 @@ class SpreadSlipHysteresis(SliderHysteresis):
     @property
     def elements(self) -> MaxwellSlipHysteresis:
         limit = self.torque_limit / ELEMENTS
-        places = [self.slip_twist * self.spread ** ((2 * k + 1) / ELEMENTS - 1.0) for k in range(ELEMENTS)]
+        places = spread_places(self.slip_twist, self.spread, ELEMENTS)
         return MaxwellSlipHysteresis(
             stiffness=tuple(limit / place for place in places),
             torque_limit=(limit,) * ELEMENTS,
