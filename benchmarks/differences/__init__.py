@@ -1,0 +1,1 @@
+"""How long differences of a Jacobian should be."""
