@@ -1,4 +1,4 @@
-"""A second cause where one leaves something: beside the best one, in place of it, and what the second is worth without the first."""
+"""A second cause where one leaves something: beside the best one, in place of it, and what each of the two is worth without the other."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def second_cause(
     known: Sequence[Found],
     said: Report,
 ) -> tuple[Search | None, tuple[Found, ...], tuple[Found, ...]]:
-    """Where one cause leaves something: a search for a second one, pairs that may be the best, and second causes without the first.
+    """Where one cause leaves something: a search for a second one, pairs that may be the best, and the causes of the best one alone.
 
     Causes that are known are put together first, and a second one is searched for where none of these pairs explains the rest; one
     phenomenon at two places does not count, which may stand for a richer law of it and for another cause (c16 of our own fourteenth
@@ -116,14 +116,13 @@ def second_cause(
     again = left(found[0].fitted) > enough(null, LEFT) and gained > TAKEN * max(first.fitted.cost - 0.5 * samples, 0.0)
     if again and not team.deadline.passed("the first cause again beside the second"):
         # the first cause was chosen while the second was missing
-        for item in others:
+        for item in (item for item in others if item.suspect.label == found[0].suspect.label):
             more = search(team, coarse, item.fitted, groups, tried, depth=SHALLOW, report=partial(under, said, "first cause again"))
             found = contenders(team, coarse, [*found, *more.found], first)
     found = _exchanged_in_place(team, coarse, found, first, everything)
     elsewhere = [] if team.deadline.passed("causes of the pair at other places") else moved(team, coarse, found, tried)
     pairs = contenders(team, coarse, [*found, *elsewhere], first)
-    if pairs[0].suspect.label not in {item.suspect.label for item in others}:
-        others += alone(team, coarse, pairs[0], everything, first)
+    others += alone(team, coarse, pairs[0], everything, first, {item.suspect.label for item in others})
     return pair, pairs, tuple(others)
 
 

@@ -197,22 +197,29 @@ def test_a_second_cause_is_looked_for_from_held_parameters_first_where_the_first
     assert seen == grounds
 
 
-def test_a_second_cause_is_tried_without_the_first(simulator: Simulator) -> None:
-    """The load's drag is missing; a pair says so beside a drag at the motor that is none."""
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)], ids=["first", "second"])
+def test_each_cause_of_a_pair_is_tried_without_the_other(simulator: Simulator, order: tuple[int, int]) -> None:
+    """The load's friction is missing, first or second in a pair beside a drag at the motor that is none, and its own fit had stopped."""
     missing = Simulator(BENCH.trials(records((hm.CoulombStribeckFriction(coulomb=4.0), "load"))[0]), 2.5e-4, 4)
     factors = factors_of(BENCH)
     tried = candidates(BENCH.scene, [hm.CoulombStribeckFriction, hm.QuadraticDrag])
     everything = suspects(Hypothesis(factors), {}, tried)
     [true] = [item for item in everything if item.label == ("friction", "load")]
     [false] = [item for item in everything if item.label == ("quadratic_drag", "motor")]
-    both = Hypothesis(factors, (*false.first[0].added, *true.first[0].added))
-    pair = Found(true, fit(missing, both, both.start(), steps=12))
-    first = fit(missing, Hypothesis(factors, false.first[0].added), Hypothesis(factors, false.first[0].added).start(), steps=2)
+    one, two = (((true, false))[k] for k in order)
+    both = Hypothesis(factors, (*one.first[0].added, *two.first[0].added))
+    pair = Found(two, fit(missing, both, both.start(), steps=12))
+    stopped = Hypothesis(factors, one.first[0].added)
+    first = fit(missing, stopped, stopped.start(), steps=1)
     with Team(1) as team:
-        [single] = alone(team, missing, pair, everything, Found(false, first))
-    assert single.suspect.label == ("friction", "load")
-    assert len(single.fitted.hypothesis.added) == 1
-    assert single.fitted.chi_fit == pytest.approx(pair.fitted.chi_fit, rel=0.02)
+        found = {item.suspect.label: item.fitted for item in alone(team, missing, pair, everything, Found(one, first))}
+        [other] = alone(team, missing, pair, everything, Found(one, first), known=[two.label])
+    assert set(found) == {one.label, two.label}
+    assert other.suspect.label == one.label
+    single = found[true.label]
+    assert len(single.hypothesis.added) == 1
+    assert single.chi_fit == pytest.approx(pair.fitted.chi_fit, rel=0.02)
+    assert single.chi_fit < first.chi_fit / 1.1
 
 
 def test_a_mass_on_a_spring_beside_a_wrong_inertia_is_tried_as_a_load_of_which_a_part_swings() -> None:
@@ -229,7 +236,7 @@ def test_a_mass_on_a_spring_beside_a_wrong_inertia_is_tried_as_a_load_of_which_a
     first = fit(missing, Hypothesis(factors), Hypothesis(factors).start(), steps=2)
     with Team(1) as team:
         found = {item.suspect.law: item for item in alone(team, missing, pair, everything, Found(suspect, first))}
-    assert set(found) == {"HiddenMode", "FlexibleInertia"}
+    assert set(found) == {"HiddenMode", "FlexibleInertia", "parameter"}
     right = found["FlexibleInertia"].fitted
     assert right.chi_fit < 1.1 < found["HiddenMode"].fitted.chi_fit
     assert right.hypothesis.rescaled(right.z)[0].added[-1].effect.share == pytest.approx(0.4, rel=0.05)
@@ -960,7 +967,7 @@ def test_the_first_of_two_causes_is_looked_for_again_beside_the_second_where_bot
         return Found(suspected(places[-1]), fitted, 1e4)
 
     null = dataclasses.replace(near, chi_fit=4.0, chi_held=4.0, cost=noise + 9000.0)
-    second = found(3.6, 8500.0, "motor")
+    second, first_alone = found(3.6, 8500.0, "motor"), found(2.0, 6000.0, "load")
     pairs = {"load": found(leaves, above, "load", "motor"), "motor": found(1.0, 4000.0, "motor", "wave_generator")}
     asked: list[str] = []
     ends: list[tuple[Found, ...]] = []  # pairs of which causes are moved: fitted to the end
@@ -976,7 +983,7 @@ def test_the_first_of_two_causes_is_looked_for_again_beside_the_second_where_bot
         "recast": lambda *some: [],
         "with_other_laws": lambda *some: [],
         "moved": lambda team, coarse, some, tried: ends.append(some) or [],
-        "alone": lambda *some: [second],
+        "alone": lambda *some: [] if some[5:] else [second, first_alone],
         "contenders": lambda team, coarse, some, first: tuple(sorted(some, key=lambda item: item.fitted.cost))[:1],
     }.items():
         monkeypatch.setattr(f"hdrive_mbs.diagnosis.second_cause.{name}", made)
