@@ -158,6 +158,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.joint_slip": ("JointSlip",),
     "effects.stiffness_asymmetry": ("StiffnessAsymmetry",),
     "effects.stiffness_variation": ("StiffnessVariation",),
+    "effects.parallel_stiffness_variation": ("ParallelStiffnessVariation",),
     "effects.supply_sag": ("SupplySag",),
     "effects.thermal_drift": ("ThermalDrift",),
     "effects.load_lag": ("LoadLag",),

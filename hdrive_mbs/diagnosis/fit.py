@@ -9,7 +9,7 @@ trial, and parts of the undamped step.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -37,6 +37,10 @@ AS_PROMISED, WELL_PROMISED = 0.6, (0.8, 1.3)
 other two the Jacobian was good enough to be mended by what the step showed, in place of new differences."""
 LATELY = 2
 """Last steps by which a fit is judged that has to come down to a cost."""
+LONG, PATIENTLY, SLOWEST = 6, 0.01, 0.02
+"""Steps in which a patient fit has to gain a share of what it stands above noise, the part of a gain that ends others which ends it, and
+that share.  A friction with 21 parameters ended 710 above the bottom of its valley; told to go on, it gained 0.4, 1, 3, 8, 12 and 18, which
+is 0.06 in six steps, and was there after 26 (c24 of our own sixteenth drive set, labels open)."""
 TINY = 1e-300
 
 
@@ -46,7 +50,7 @@ class Fitted:
 
     z : search coordinates;  residuals : whitened, all samples;  cost : misfit of the fitted samples and priors
     curvature : J^T W J over the fitted samples at (or just before) z, shape (size, size)
-    converged : whether the last step changed the cost by less than asked for
+    converged : whether the last step changed the cost by less than asked for;  patient : and whether it had gone on until it stalled
     chi_fit, chi_held : mean squares over the samples that it saw and those that it did not
     typical : twice the misfit of the fitted samples over their number: chi_fit with each stretch that fits badly counted by its logarithm.
         Impacts of a contact come a little early or late with every law that is nearly right, and few samples then hold most of the
@@ -66,6 +70,7 @@ class Fitted:
     typical: float
     misfit_held: float
     history: tuple[float, ...] = field(default=())
+    patient: bool = False
 
     @property
     def covariance(self) -> FloatArray:
@@ -82,15 +87,16 @@ def fit(
     steps: int = 20,
     enough: float = 0.2,
     share: float = 1e-4,
-    stop: Callable[[], bool] | None = None,
     begin: FloatArray | None = None,
     beat: float | None = None,
+    patient: bool = False,
 ) -> Fitted:
     """The most probable parameters, from a start.
 
     steps : most Gauss-Newton steps;  enough, share : a step that lowers the cost by less than enough + share times the cost ends the search
     begin : residuals at the start, if they are there already
     beat : a cost that it has to come down to; given up where its last steps, kept up through all that are left, do not lead there
+    patient : go on where a step gains a hundredth of that too, until it stalls (``stalls``)
 
     Raises AnalysisError where the start cannot be simulated.
     """
@@ -100,6 +106,7 @@ def fit(
         raise AnalysisError(f"{hypothesis.label}: its start values cannot be simulated; give the effect other typical values.")
     precisions = hypothesis.precisions
     mask = simulator.fit
+    noise = 0.5 * int(np.count_nonzero(mask))
 
     cost = _cost(simulator, hypothesis, residuals, z)
     history = [cost]
@@ -156,12 +163,12 @@ def fit(
         z, residuals, cost = points[best][0], chosen, costs[best]
         found.clear()  # of all steps, while the next differences are made
         history.append(cost)
-        if gain < enough + share * cost:
-            if of_differences:
-                converged = True
-                break
-            columns = None
-        if (stop is not None and stop()) or falls_short(history, beat, steps - done):
+        little = gain < enough + share * cost
+        if little and of_differences and (not patient or gain < PATIENTLY * (enough + share * cost) or stalls(history, noise)):
+            converged = True
+            break
+        columns = None if little else columns
+        if falls_short(history, beat, steps - done):
             break
     return Fitted(
         hypothesis=hypothesis,
@@ -176,6 +183,7 @@ def fit(
         typical=2.0 * simulator.blocks.cost(residuals[mask]) / max(int(np.count_nonzero(mask)), 1),
         misfit_held=simulator.held_blocks.cost(residuals[simulator.held_out]),
         history=tuple(history),
+        patient=patient,
     )
 
 
@@ -187,6 +195,14 @@ def falls_short(costs: Sequence[float], beat: float | None, left: int) -> bool:
     if beat is None or len(costs) <= LATELY:
         return False
     return costs[-1] - left * (costs[-1 - LATELY] - costs[-1]) > beat
+
+
+def stalls(costs: Sequence[float], noise: float) -> bool:
+    """Whether the last LONG steps together gained less than a share of what a fit stood above noise before them.
+
+    costs : at the start and after each step that gained something
+    """
+    return len(costs) > LONG and costs[-1 - LONG] - costs[-1] < SLOWEST * (costs[-1 - LONG] - noise)
 
 
 def secant(columns: FloatArray, change: FloatArray, move: FloatArray, scale: FloatArray) -> FloatArray:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from hdrive_mbs.diagnosis.choosing import beyond
+from hdrive_mbs.diagnosis.choosing import SEEN, beyond
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.ground import as_known
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis, searched_fields
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect
 from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, Found, Task, further, rivalling
+from hdrive_mbs.diagnosis.verdict import left
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
 
@@ -21,8 +22,8 @@ STARTS = 2
 """Of another law of the best label."""
 BENT = 3.0
 """Prior standard deviations of a parameter from which on it is suspected whatever a look shows."""
-RIVALS = 2
-"""Labels whose best laws are fitted to the end."""
+RIVALS, PATIENT = 2, 40
+"""Labels whose best laws are fitted to the end, and steps that they may take."""
 ALIKE = 1.0
 """Log-likelihood within which a law has come out as good as one that acts exactly as it does."""
 AGAIN = 2
@@ -50,16 +51,21 @@ def bent(base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Tas
 
 
 def unfinished(found: Sequence[Found]) -> list[tuple[Suspect, Task]]:
-    """The best laws of the first two labels that may still get better: a choice between places is one between fits to the end."""
+    """The best laws of the first two labels that may still get better: a choice between places is one between fits to the end.
+
+    Where the best leaves something, those that have ended go on with patience: in a valley that bends a step may gain little at first.
+    """
     first: dict[Label, Found] = {}
     for item in found:
         first.setdefault(item.suspect.label, item)
     best = list(first.values())[:RIVALS]
-    return [
-        (item.suspect, further(item.fitted, beat=None if item is best[0] else rivalling(best[0].fitted)))
+    patient = bool(best) and left(best[0].fitted) > SEEN
+    tasks = [
+        (item.suspect, further(item.fitted, PATIENT, beat=None if item is best[0] else rivalling(best[0].fitted), patient=patient))
         for item in best
-        if not item.fitted.converged and not beyond(item.fitted, best[0].fitted)
+        if not beyond(item.fitted, best[0].fitted)
     ]
+    return [(suspect, task) for suspect, task in tasks if task.done is None]
 
 
 def other_laws(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:

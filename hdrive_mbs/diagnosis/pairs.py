@@ -6,12 +6,14 @@ import dataclasses
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
 from hdrive_mbs.diagnosis.candidates import Candidate
+from hdrive_mbs.diagnosis.choosing import SEEN
 from hdrive_mbs.diagnosis.from_the_best import values_of, with_values
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect, renamed
 from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, FIRST, Found, Task, further, is_hopeless, rivalling, run_task, those_that_ran
 from hdrive_mbs.diagnosis.team import Team
+from hdrive_mbs.diagnosis.verdict import left
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.quantities import is_needed
@@ -174,7 +176,8 @@ def _plain(effect: Effect) -> Effect:
 def contenders(team: Team, simulator: Simulator, pairs: Sequence[Found], first: Found) -> tuple[Found, ...]:
     """The pairs that may be the best, fitted to the end, best first: one for each two causes.
 
-    Friction of either end of a stiff shaft, say, differs by less than what a few steps bring.
+    Friction of either end of a stiff shaft, say, differs by less than what a few steps bring.  Where the best leaves something, they are
+    fitted with patience.
 
     pairs : at least one;  first : the best single cause
     """
@@ -184,7 +187,8 @@ def contenders(team: Team, simulator: Simulator, pairs: Sequence[Found], first: 
     ranked = list(best.values())
     least = ranked[0].fitted.cost
     near = [item for item in ranked if item.fitted.cost - least <= NEARLY * max(first.fitted.cost - least, 0.0)][:CONTENDERS]
-    fits = team.map(run_task, simulator, [further(item.fitted) for item in near])
+    patient = left(near[0].fitted) > SEEN
+    fits = team.map(run_task, simulator, [further(item.fitted, patient=patient) for item in near])
     return tuple(sorted(those_that_ran([item.suspect for item in near], fits), key=lambda item: item.fitted.cost)) or (ranked[0],)
 
 

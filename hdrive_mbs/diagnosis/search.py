@@ -136,6 +136,8 @@ def search(
         else work.from_ground(base, base, everything, far=base.chi_fit > NEAR)
     )
     found = work.other_ways(found, base, everything)
+    if how.laws > 1:
+        found = work.to_the_end(found)
     looks = {f"{suspect.law} at {suspect.label[1]}": cost for suspect, cost in first}
     inexact = how.laws > 1 and how.again and base.chi_fit > FAR and not any(item.fitted.typical < enough(base, ENOUGH) for item in found)
     done = inexact and explained is not None and explained(_ranked(found, base, looks))
@@ -146,7 +148,7 @@ def search(
     if not done and (how.laws > 1 or (found and found[0].fitted.chi_fit > FAR)):
         moved = elsewhere(found[0] if found else None, base, everything) + (restarts(found, FAR) if how.laws > 1 and how.again else [])
         found = cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
-        found = cheapest([*found, *work.fitted(unfinished(found), "fitting the best")])
+        found = work.to_the_end(found)
     if how.laws > 1 and base.chi_fit < NEAR:
         found = cheapest([*found, *work.fitted(bent(base, everything), "fitting parameters that the nominal model has bent")])
     found = cheapest([*found, *work.fitted(twins(found, base, everything, simulator), "trying laws that act alike")])
@@ -266,6 +268,10 @@ class _Work:
         near = [item for item in begun if not beyond(item.fitted, found[0].fitted)][: self.how.serious]
         going = [(item.suspect, further(item.fitted, 2 * STEPS, beat=rivalling(found[0].fitted))) for item in near]
         return cheapest([*found, *begun, *self.fitted(going, "fitting on from there")])
+
+    def to_the_end(self, found: list[Found]) -> list[Found]:
+        """With the best of what was found fitted to the end."""
+        return cheapest([*found, *self.fitted(unfinished(found), "fitting the best")])
 
     def _others(self, looks: Sequence[tuple[Suspect, Look]], beat: float) -> list[Found]:
         """A few joint steps from looks that had been left aside, and the best of them fitted to the end if they come down to a cost."""

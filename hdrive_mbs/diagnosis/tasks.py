@@ -48,6 +48,7 @@ class Task:
 
     leading : mean square of what it is tried against, if anything: given up after the first steps where it is hopeless beside that
     beat : cost of what it is tried against, if anything: given up where its steps do not lead there
+    patient : whether it goes on where its steps gain little, see ``fit``
     """
 
     hypothesis: Hypothesis
@@ -59,12 +60,13 @@ class Task:
     hops: int = 0
     leading: float | None = None
     beat: float | None = None
+    patient: bool = False
 
 
 def run_task(simulator: Simulator, task: Task) -> Fitted | None:
     """Do it; None where it cannot be run from where it begins."""
     first = task.steps if task.leading is None else min(FIRST, task.steps)
-    on = partial(fit, simulator, task.hypothesis, share=task.share, beat=task.beat)
+    on = partial(fit, simulator, task.hypothesis, share=task.share, beat=task.beat, patient=task.patient)
     try:
         fitted = task.done or on(task.z, steps=first, begin=task.residuals)
         if task.leading is not None and not fitted.converged and not is_hopeless(fitted.chi_fit, task.leading):
@@ -85,9 +87,12 @@ def is_hopeless(left: float, leading: float) -> bool:
     return leading < NEAR and left > HOPELESS * leading
 
 
-def further(fitted: Fitted, steps: int = CONVERGED, share: float = FINE, hops: int = 0, beat: float | None = None) -> Task:
-    """To fit on from where a fit stands."""
-    return Task(fitted.hypothesis, fitted.z, fitted.residuals, steps, share, fitted if fitted.converged else None, hops, beat=beat)
+def further(
+    fitted: Fitted, steps: int = CONVERGED, share: float = FINE, hops: int = 0, beat: float | None = None, patient: bool = False
+) -> Task:
+    """To fit on from where a fit stands; with patience also where it has converged without."""
+    done = fitted.converged and fitted.patient >= patient
+    return Task(fitted.hypothesis, fitted.z, fitted.residuals, steps, share, fitted if done else None, hops, beat=beat, patient=patient)
 
 
 def scored(found: Found, base: Fitted) -> Found:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -11,6 +11,7 @@ import numpy as np
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
+from hdrive_mbs.network.connection_draft import ConnectionDraft, Torque
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.quantities import option, parameter
@@ -53,31 +54,45 @@ class StiffnessVariation(Effect):
 
     def check(self) -> None:
         if self.follows not in ("wave_generator", "flexspline"):
-            raise ParameterError(f"StiffnessVariation.follows = {self.follows!r}: must be 'wave_generator' or 'flexspline'.")
+            raise ParameterError(f"{type(self).__name__}.follows = {self.follows!r}: must be 'wave_generator' or 'flexspline'.")
 
     def share(self, angle: Value) -> Value:
         """r, share by which the stiffness is larger at a true angle [rad] of the flange."""
         return self.variation * np.sin(self.order * angle + self.phase)
 
+    def varying(self, gear: ConnectionDraft, law: Torque) -> tuple[Callable[[Moment, Value], Value], Callable[[Moment, Value], Value]]:
+        """What varies of a gear's law: its torque [N m] at a twist, and its energy U [J] at an angle of the flange.
+
+        U is by the law as it ends up, which holds 1 + r as a factor.
+        """
+
+        def torque(moment: Moment, twist: Value) -> Value:
+            return law(moment, twist, 0.0)
+
+        def energy(moment: Moment, angle: Value) -> Value:
+            twist, _ = gear.inside(moment)
+            points = 0.5 * (1.0 + _NODES)
+            whole = sum(0.5 * weight * twist * gear.law(moment, point * twist, 0.0) for point, weight in zip(points, _WEIGHTS))
+            return whole / (1.0 + self.share(angle))
+
+        return torque, energy
+
     def apply(self, draft: Draft, place: str, name: str) -> None:
-        gear = draft.connection(place, "StiffnessVariation", flanges=(self.follows, "circular_spline"))
+        gear = draft.connection(place, type(self).__name__, flanges=(self.follows, "circular_spline"))
         flange, ring = draft.body(gear.bodies[self.follows]), draft.body(gear.bodies["circular_spline"])
         relative = {flange.name: float(flange.sense), ring.name: -float(ring.sense)}
         old = gear.law
+        torque, energy = self.varying(gear, old)
 
         def angle(moment: Moment) -> Value:
             return sum(factor * moment.angle(body) for body, factor in relative.items())
 
         def new(moment: Moment, twist: Value, rate: Value) -> Value:
-            return old(moment, twist, rate) + self.share(angle(moment)) * old(moment, twist, 0.0)
+            return old(moment, twist, rate) + self.share(angle(moment)) * torque(moment, twist)
 
         def reaction(moment: Moment, relative_angle: Value, relative_speed: Value) -> Value:
-            """dr/da U(x): U by the law as it ends up, which holds 1 + r as a factor."""
-            twist, _ = gear.inside(moment)
-            points = 0.5 * (1.0 + _NODES)
-            whole = sum(0.5 * weight * twist * gear.law(moment, point * twist, 0.0) for point, weight in zip(points, _WEIGHTS))
             slope = self.variation * self.order * np.cos(self.order * relative_angle + self.phase)
-            return slope * whole / (1.0 + self.share(relative_angle))
+            return slope * energy(moment, relative_angle)
 
         gear.law = new
         draft.add_relative_torque(name, relative, reaction)

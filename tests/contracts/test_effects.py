@@ -61,6 +61,7 @@ from hdrive_mbs.effects.mesh_friction import MeshFriction
 from hdrive_mbs.effects.mesh_presliding_friction import MeshPreslidingFriction
 from hdrive_mbs.effects.motor_scale import MotorScale
 from hdrive_mbs.effects.one_sided_stiffness import OneSidedStiffness
+from hdrive_mbs.effects.parallel_stiffness_variation import ParallelStiffnessVariation
 from hdrive_mbs.effects.places import PLACES
 from hdrive_mbs.effects.power_drag import PowerDrag
 from hdrive_mbs.effects.presliding_friction import PreslidingFriction
@@ -226,6 +227,7 @@ EXAMPLES = {
         Example(SoftWindup(width=2e-4, soft_twist=5e-5), "gear", ("width",)),
         Example(FilmBacklash(backlash=0.01, film=1e-3, film_damping=0.02), "coupling", ("backlash",)),
         Example(StiffnessVariation(variation=0.3, phase=0.4), "gear", ("variation",)),
+        Example(ParallelStiffnessVariation(variation=0.3, phase=0.4), "gear", ("variation",)),
         Example(
             Cogging(amplitude=0.3, order=6.0, phase=0.4, second_amplitude=0.1, third_amplitude=0.05, third_phase=1.0),
             "motor",

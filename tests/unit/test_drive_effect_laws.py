@@ -16,6 +16,7 @@ from hdrive_mbs.effects.dead_zone import contact_share, dead_zone
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError, PlaceError
 from hdrive_mbs.expression import Value, gradient
+from hdrive_mbs.network.network import Network
 from models import drive_bench, rotor_bench
 
 TIGHT = hm.DormandPrince(relative_tolerance=1e-10, absolute_tolerance=1e-12, max_step=1e-3)
@@ -295,6 +296,35 @@ def test_a_stiffness_that_varies_keeps_its_reaction_with_lost_motion_and_asymmet
     assert np.max(np.abs(inside)) > 1e-3
     # four Gauss points on a rounded corner: the reaction is good to a per cent of itself
     np.testing.assert_allclose(total, total[0], rtol=1e-3)
+
+
+@pytest.mark.parametrize("gap", [0.0, 4e-4])
+def test_a_stiffness_beside_the_law_varies_by_as_much_at_each_torque_and_makes_no_energy(gap: float) -> None:
+    """Of a law that hardens, with a gap of its own; potential  T's + A sin(n a + p) k d^2/2."""
+    law = hm.PiecewiseLinearStiffness(lost_motion=gap, stiffness_1=1e4, stiffness_2=2e4, stiffness_3=3e4, torque_1=5.0, torque_2=15.0)
+    effect = hm.ParallelStiffnessVariation(variation=0.5, order=2.0, phase=0.3)
+    scene = drive(law).with_effect(effect, at="gear", name="it")
+    network, plain = scene.network(), drive(law).network()
+
+    def on_load(of: Network, motor: float, load: float) -> float:
+        torques = of.torques(of.moment(0.0, {"motor": motor, "load": load}, {"motor": 0.0, "load": 0.0}, {}))
+        return float(torques["load"])
+
+    for twist in (-3e-3, -1e-4, 1e-4, 8e-4, 3e-3):
+        motor = 0.8
+        beyond = math.copysign(max(abs(twist) - 0.5 * gap, 0.0), twist)
+        more = on_load(network, motor, motor / 50.0 - twist) - on_load(plain, motor, motor / 50.0 - twist)
+        assert more == pytest.approx(0.5 * math.sin(2.0 * motor + 0.3) * 1e4 * beyond, rel=1e-6, abs=1e-9)
+    response = hm.simulate(scene, 0.2, solver=TIGHT, initial={"motor.speed": 40.0, "load.speed": 0.4})
+    grid = np.linspace(-0.05, 0.05, 400001)
+    torque = law.torque(grid)
+    area = np.concatenate([[0.0], np.cumsum(0.5 * (torque[1:] + torque[:-1]) * np.diff(grid))])
+    twist = response["gear.twist"].values
+    beyond = twist - np.clip(twist, -0.5 * gap, 0.5 * gap)
+    potential = np.interp(twist, grid, area - np.interp(0.0, grid, area)) + response["it.share"].values * 0.5e4 * beyond**2
+    kinetic = 0.5 * 1e-3 * response["motor.speed"].values ** 2 + 0.5 * 0.5 * response["load.speed"].values ** 2
+    assert np.max(np.abs(twist)) > 1.5e-3  # where the law has hardened twice
+    np.testing.assert_allclose(kinetic + potential, (kinetic + potential)[0], rtol=1e-6)
 
 
 def test_stiffness_at_twice_a_mode_makes_it_grow_as_mathieu_says() -> None:
