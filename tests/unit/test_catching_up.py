@@ -9,9 +9,10 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis import all_samples, tasks
+from hdrive_mbs.diagnosis import fit as fitting
 from hdrive_mbs.diagnosis.all_samples import on_all_samples
 from hdrive_mbs.diagnosis.diagnose import factors_of
-from hdrive_mbs.diagnosis.fit import Fitted, falls_short, fit
+from hdrive_mbs.diagnosis.fit import LONG, Fitted, falls_short, fit, stalls
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.located import Located
 from hdrive_mbs.diagnosis.pairs import swapped
@@ -19,8 +20,9 @@ from hdrive_mbs.diagnosis.scans import fits_from
 from hdrive_mbs.diagnosis.screening import Look
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import Suspect
-from hdrive_mbs.diagnosis.tasks import Found, Task, rivalling, run_task
+from hdrive_mbs.diagnosis.tasks import Found, Task, further, rivalling, run_task
 from hdrive_mbs.diagnosis.team import Team
+from tests.unit.bent_valley import CENTRE, Bent, two
 from tests.unit.diagnosis_cases import bench, records
 
 BENCH = bench()
@@ -56,6 +58,57 @@ def test_a_fit_falls_short_of_a_cost_that_its_last_gains_do_not_lead_to(
     costs: list[float], beat: float | None, left: int, short: bool
 ) -> None:
     assert falls_short(costs, beat, left) is short
+
+
+@pytest.mark.parametrize(
+    ("costs", "does"),
+    [
+        ([1000.0, 999.9, 999.8, 999.7, 999.6, 999.5], False),  # fewer steps than it takes to say so
+        ([1000.0, 999.9, 999.8, 999.7, 999.6, 999.5, 999.4], True),  # 0.6 of 100 above noise
+        ([1000.0, 999.6, 998.6, 995.6, 987.6, 975.6, 957.6], False),  # more and more
+        ([950.0, 940.0, 930.0, 920.0, 915.0, 910.0, 909.0, 908.9, 908.8, 908.7, 908.6, 908.5, 908.4], False),  # 0.6 of 9
+    ],
+)
+def test_a_fit_stalls_where_its_last_steps_gain_next_to_nothing_of_what_stands_above_noise(costs: list[float], does: bool) -> None:
+    assert stalls(costs, 900.0) is does
+
+
+@pytest.mark.parametrize(("part", "patient", "steps"), [(0.02, False, 1), (0.02, True, None), (0.0008, True, LONG)])
+def test_a_patient_fit_goes_on_where_its_steps_gain_little_until_it_stalls(
+    monkeypatch: pytest.MonkeyPatch, part: float, patient: bool, steps: int | None
+) -> None:
+    """A straight valley in which steps are that part of the way: 0.04 of what is left is gained, or 0.0016, less than ends another fit."""
+    bent = Bent(0.0)
+    bent.noise *= 1.03  # so that the bottom stands above noise
+    bottom, start = bent.bottom(), np.array([CENTRE - 0.38, 0.0])
+
+    def proposals(hypothesis: Hypothesis, z: np.ndarray, *_: object) -> list[tuple[np.ndarray, float]]:
+        return [(z + part * (bottom - z), 0.0)]
+
+    monkeypatch.setattr(fitting, "_proposals", proposals)
+    monkeypatch.setattr(fitting, "_curved", lambda *_: [])
+    found = fit(bent, two(), start, steps=500, patient=patient)  # type: ignore[arg-type]
+    assert found.converged
+    assert found.patient is patient
+    least = bent.blocks.cost(bent.one(bottom)[bent.fit]) + two().prior_cost(bottom)
+    if steps is None:
+        assert found.steps > 3 * LONG
+        assert found.cost - least < 0.25 * (found.history[0] - least)
+    else:
+        assert found.steps == steps
+        assert found.cost - least > 0.9 * (found.history[0] - least)
+
+
+def test_what_has_converged_without_patience_is_fitted_again_with_it_and_once(missing: Simulator, task: Task) -> None:
+    found = run_task(missing, dataclasses.replace(task, steps=0))
+    assert found is not None
+    ended = dataclasses.replace(found, converged=True)
+    assert further(ended).done is ended
+    assert further(ended, patient=True).done is None
+    assert further(dataclasses.replace(ended, patient=True), patient=True).done is not None
+    assert further(dataclasses.replace(ended, patient=True)).done is not None
+    assert further(dataclasses.replace(found, patient=True), patient=True).done is None
+    assert found.converged is found.patient is False
 
 
 def test_a_fit_that_cannot_catch_up_ends_early_and_one_that_can_is_the_same(missing: Simulator, task: Task) -> None:

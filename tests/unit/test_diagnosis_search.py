@@ -593,7 +593,15 @@ def test_other_laws_of_the_best_label_begin_with_its_values(simulator: Simulator
     parameter = dataclasses.replace(dahl, suspect=dataclasses.replace(dahl.suspect, law="parameter"))
     assert other_laws([parameter], base, everything) == []
     assert [item.hypothesis for _, item in unfinished([dahl])] == [hypothesis]
-    assert unfinished([dataclasses.replace(dahl, fitted=dataclasses.replace(fitted, converged=True))]) == []
+
+    def ended(**how: float) -> list[bool]:
+        """Of what is asked for once it has ended, whether with patience."""
+        again = dataclasses.replace(fitted, converged=True, **how)
+        return [task.patient for _, task in unfinished([dataclasses.replace(dahl, fitted=again)])]
+
+    assert ended(chi_held=2.0) == [True]
+    assert ended(chi_held=2.0, patient=True) == []
+    assert ended(chi_fit=1.0, chi_held=1.0) == []
 
 
 def test_a_finer_law_waits_until_the_others_of_its_label_leave_something(simulator: Simulator) -> None:
