@@ -119,6 +119,7 @@ def search(
     Where they leave something, the places of their families that were passed over are fitted too.
     Where these leave something, the other laws of the best label are tried from its values, and all of them begin again from other
     values of what decides whether they show (other_starts.py).
+    The best are fitted to the end then, with patience where they leave something (``unfinished``).
     Where all of them leave something, the same is done with the likeliest, the parameters held near the values of the data sheet.
     What came out best is then tried at all other places where it may sit, from the values found; in a shallow search only where it
     leaves much.
