@@ -122,7 +122,8 @@ def search(
     The best are fitted to the end then, with patience where they leave something (``unfinished``).
     Where all of them leave something, the same is done with the likeliest, the parameters held near the values of the data sheet.
     What came out best is then tried at all other places where it may sit, from the values found; in a shallow search only where it
-    leaves much.
+    leaves much.  Laws that the best label has not been tried with follow where that leaves something: of two laws that stood for a friction
+    at the wrong end of a shaft the one that came nearer there is not the right one.
     A shallow search begins with held parameters where those of the base are bent.
 
     begin : of the simulator and a fitted model, what says where laws with a period begin
@@ -149,6 +150,8 @@ def search(
     if not done and (how.laws > 1 or (found and found[0].fitted.chi_fit > FAR)):
         moved = elsewhere(found[0] if found else None, base, everything) + (restarts(found, FAR) if how.laws > 1 and how.again else [])
         found = cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
+        if how.laws > 1 and found and left(found[0].fitted) > SEEN:
+            found = cheapest([*found, *work.fitted(other_laws(found, base, everything), "trying other laws there")])
         found = work.to_the_end(found)
     if how.laws > 1 and base.chi_fit < NEAR:
         found = cheapest([*found, *work.fitted(bent(base, everything), "fitting parameters that the nominal model has bent")])
