@@ -197,6 +197,46 @@ def test_a_second_cause_is_looked_for_from_held_parameters_first_where_the_first
     assert seen == grounds
 
 
+@pytest.mark.parametrize(("leaves", "asked"), [(1.15, [("friction", "load")]), (1.01, [])])
+def test_other_laws_of_a_label_that_is_the_best_only_in_the_end_are_tried_too(
+    simulator: Simulator, monkeypatch: pytest.MonkeyPatch, leaves: float, asked: list[tuple[str, str]]
+) -> None:
+    """A law stood for friction at the motor; moved to the load it leaves less, and what it leaves there another law may take."""
+    hypothesis = Hypothesis(factors_of(BENCH))
+    base = dataclasses.replace(fit(simulator, hypothesis, hypothesis.start(), steps=0), chi_fit=1e4, chi_held=1e4, cost=9e4)
+    tried = candidates(BENCH.scene, [hm.DahlFriction, hm.CoulombStribeckFriction])
+    everything = {(item.law, item.label[1]): item for item in suspects(hypothesis, {}, tried)}
+    told: list[tuple[str, str]] = []
+
+    def found(place: str, cost: float, chi: float) -> Found:
+        suspect = everything["DahlFriction", place]
+        curvature = np.eye(suspect.all[0].size)
+        fitted = dataclasses.replace(
+            base,
+            hypothesis=suspect.all[0],
+            z=suspect.all[0].start(),
+            cost=cost,
+            chi_fit=chi,
+            chi_held=chi,
+            typical=chi,
+            curvature=curvature,
+        )
+        return Found(suspect, fitted)
+
+    def fitted(self: _Work, tasks: Sequence[tuple[Suspect, Task]], words: str) -> list[Found]:
+        if words == "trying other laws there":
+            told.extend(suspect.label for suspect, _ in tasks)
+            assert {suspect.law for suspect, _ in tasks} <= {"CoulombStribeckFriction"}
+        return [found("load", 100.0, leaves)] if words == "trying the best elsewhere" else []
+
+    monkeypatch.setattr(_Work, "from_ground", lambda *_, **__: ([found("motor", 200.0, 1.2)], []))
+    monkeypatch.setattr(_Work, "fitted", fitted)
+    monkeypatch.setattr(_Work, "other_ways", lambda self, known, *_: known)
+    with Team(1, None) as team:
+        search(team, simulator, base, {}, tried)
+    assert sorted(set(told)) == asked
+
+
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)], ids=["first", "second"])
 def test_each_cause_of_a_pair_is_tried_without_the_other(simulator: Simulator, order: tuple[int, int]) -> None:
     """The load's friction is missing, first or second in a pair beside a drag at the motor that is none, and its own fit had stopped."""
