@@ -20,7 +20,7 @@ from hdrive_mbs.diagnosis.choosing import beyond, enough, not_begun, passed_over
 from hdrive_mbs.diagnosis.diagnose import factors_of, strongest_first
 from hdrive_mbs.diagnosis.differences import jacobian
 from hdrive_mbs.diagnosis.fit import Fitted, fit, secant
-from hdrive_mbs.diagnosis.from_the_best import bent, other_laws, unfinished
+from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, unfinished
 from hdrive_mbs.diagnosis.gather import ALIKE, SINGLES, close_laws, serious
 from hdrive_mbs.diagnosis.ground import LIKELY, held, is_bent, screen_from
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
@@ -35,7 +35,7 @@ from hdrive_mbs.diagnosis.second_cause import slight, wants_second
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.starts import Starts
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, at_first, simplest, suspects
-from hdrive_mbs.diagnosis.tasks import FIRST, Found, Task, proven, run_task, scored
+from hdrive_mbs.diagnosis.tasks import FIRST, RIVAL, Found, Task, proven, run_task, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.verdict import judge
 from hdrive_mbs.errors import AnalysisError
@@ -603,6 +603,28 @@ def test_orders_that_come_close_in_a_look_are_looked_at_once_more(monkeypatch: p
     assert once is not None
     assert [item.hypothesis.added[-1].effect.order for item in (look, once)] == [6.0, 42.0]
     assert base.cost - look.cost > 3.0 * (base.cost - once.cost)
+
+
+def test_other_parameters_are_tried_in_place_of_the_one_that_did_best(simulator: Simulator) -> None:
+    """With what it had bent brought back, and given up where they do not come down to it; a cause of the base keeps its values."""
+    factors = factors_of(BENCH)
+    first, second, *_ = (item.name for item in factors)
+    cause = Added(hm.QuadraticDrag(coefficient=1e-3), "load", "drag")
+    plain = Hypothesis(factors, (cause,))
+    base = fit(simulator, plain, plain.start(np.full(len(factors), 1.5)) + 0.25, steps=0)
+    everything = suspects(plain, {first: [first], second: [second]}, candidates(BENCH.scene, [hm.CoulombStribeckFriction]))
+    one, other = (item for item in everything if item.law == "parameter")
+    z = one.all[0].start(np.full(len(factors), -2.0))
+    best = Found(one, fit(simulator, one.all[0], z, steps=0))
+    [(suspect, task)] = elsewhere(best, base, everything)
+    assert suspect is other
+    assert task.hypothesis is other.all[0]
+    assert task.beat == pytest.approx(best.fitted.cost + RIVAL)
+    loose = [item.name == second for item in factors]
+    nominal = task.hypothesis.nominal_part(task.z)
+    assert nominal[np.array(loose)] == pytest.approx(best.fitted.hypothesis.nominal_part(best.fitted.z)[np.array(loose)])
+    assert not np.any(nominal[~np.array(loose)])
+    np.testing.assert_array_equal(task.z[len(factors) :], base.z[len(factors) :])
 
 
 def test_other_laws_of_the_best_label_begin_with_its_values(simulator: Simulator) -> None:
