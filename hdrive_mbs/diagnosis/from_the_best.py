@@ -157,8 +157,8 @@ def elsewhere(best: Found | None, base: Fitted, everything: Sequence[Suspect]) -
 def _other_parameters(best: Found, base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:
     """Other parameters let loose in place of the best one, all that it has bent brought back towards the data sheet.
 
-    Two stiffnesses in series stand for each other: that of a flexspline left 1.02 where that of the output shaft, which was 27 % off, leaves 1.00 and
-    did not show in a look (c15 of our own eighteenth drive set, labels open).
+    Two stiffnesses in series stand for each other: that of a flexspline left 1.02 where that of the output shaft, 1.27 times the nominal
+    one, leaves 1.00 and did not show in a look (c15 of our own eighteenth drive set, labels open).
     """
     fitted = best.fitted
     tasks = []
