@@ -206,6 +206,7 @@ from hdrive_mbs.effects.spread_slip_friction import SpreadSlipFriction as Spread
 from hdrive_mbs.effects.spread_slip_hysteresis import SpreadSlipHysteresis as SpreadSlipHysteresis
 from hdrive_mbs.effects.steep_crack import SteepCrack as SteepCrack
 from hdrive_mbs.effects.stiffness_asymmetry import StiffnessAsymmetry as StiffnessAsymmetry
+from hdrive_mbs.effects.parallel_stiffness_variation import ParallelStiffnessVariation as ParallelStiffnessVariation
 from hdrive_mbs.effects.stiffness_variation import StiffnessVariation as StiffnessVariation
 from hdrive_mbs.effects.supply_sag import SupplySag as SupplySag
 from hdrive_mbs.effects.support_damping_change import SupportDampingChange as SupportDampingChange
