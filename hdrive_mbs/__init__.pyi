@@ -175,6 +175,7 @@ from hdrive_mbs.effects.oil_whirl import OilWhirl as OilWhirl
 from hdrive_mbs.effects.oil_whirl_cycle import OilWhirlCycle as OilWhirlCycle
 from hdrive_mbs.effects.oil_whirl_onset import OilWhirlOnset as OilWhirlOnset
 from hdrive_mbs.effects.one_sided_stiffness import OneSidedStiffness as OneSidedStiffness
+from hdrive_mbs.effects.parallel_stiffness_variation import ParallelStiffnessVariation as ParallelStiffnessVariation
 from hdrive_mbs.effects.phased_crack import PhasedCrack as PhasedCrack
 from hdrive_mbs.effects.power_drag import PowerDrag as PowerDrag
 from hdrive_mbs.effects.presliding_friction import PreslidingFriction as PreslidingFriction
@@ -206,7 +207,6 @@ from hdrive_mbs.effects.spread_slip_friction import SpreadSlipFriction as Spread
 from hdrive_mbs.effects.spread_slip_hysteresis import SpreadSlipHysteresis as SpreadSlipHysteresis
 from hdrive_mbs.effects.steep_crack import SteepCrack as SteepCrack
 from hdrive_mbs.effects.stiffness_asymmetry import StiffnessAsymmetry as StiffnessAsymmetry
-from hdrive_mbs.effects.parallel_stiffness_variation import ParallelStiffnessVariation as ParallelStiffnessVariation
 from hdrive_mbs.effects.stiffness_variation import StiffnessVariation as StiffnessVariation
 from hdrive_mbs.effects.supply_sag import SupplySag as SupplySag
 from hdrive_mbs.effects.support_damping_change import SupportDampingChange as SupportDampingChange
