@@ -11,7 +11,7 @@ import numpy as np
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
-from hdrive_mbs.network.connection_draft import ConnectionDraft, Torque
+from hdrive_mbs.network.connection_draft import ConnectionDraft
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.quantities import option, parameter
@@ -60,40 +60,38 @@ class StiffnessVariation(Effect):
         """r, share by which the stiffness is larger at a true angle [rad] of the flange."""
         return self.variation * np.sin(self.order * angle + self.phase)
 
-    def varying(self, gear: ConnectionDraft, law: Torque) -> tuple[Callable[[Moment, Value], Value], Callable[[Moment, Value], Value]]:
-        """What varies of a gear's law: its torque [N m] at a twist, and its energy U [J] at an angle of the flange.
+    def vary(self, gear: ConnectionDraft, share: Callable[[Moment], Value]) -> Callable[[Moment], Value]:
+        """Let a gear's law vary by a share; what varies of its energy, U [J], of which r is a factor.
 
         U is by the law as it ends up, which holds 1 + r as a factor.
         """
+        old = gear.law
 
-        def torque(moment: Moment, twist: Value) -> Value:
-            return law(moment, twist, 0.0)
+        def new(moment: Moment, twist: Value, rate: Value) -> Value:
+            return old(moment, twist, rate) + share(moment) * old(moment, twist, 0.0)
 
-        def energy(moment: Moment, angle: Value) -> Value:
+        def energy(moment: Moment) -> Value:
             twist, _ = gear.inside(moment)
             points = 0.5 * (1.0 + _NODES)
             whole = sum(0.5 * weight * twist * gear.law(moment, point * twist, 0.0) for point, weight in zip(points, _WEIGHTS))
-            return whole / (1.0 + self.share(angle))
+            return whole / (1.0 + share(moment))
 
-        return torque, energy
+        gear.law = new
+        return energy
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         gear = draft.connection(place, type(self).__name__, flanges=(self.follows, "circular_spline"))
         flange, ring = draft.body(gear.bodies[self.follows]), draft.body(gear.bodies["circular_spline"])
         relative = {flange.name: float(flange.sense), ring.name: -float(ring.sense)}
-        old = gear.law
-        torque, energy = self.varying(gear, old)
 
         def angle(moment: Moment) -> Value:
             return sum(factor * moment.angle(body) for body, factor in relative.items())
 
-        def new(moment: Moment, twist: Value, rate: Value) -> Value:
-            return old(moment, twist, rate) + self.share(angle(moment)) * torque(moment, twist)
+        energy = self.vary(gear, lambda moment: self.share(angle(moment)))
 
         def reaction(moment: Moment, relative_angle: Value, relative_speed: Value) -> Value:
             slope = self.variation * self.order * np.cos(self.order * relative_angle + self.phase)
-            return slope * energy(moment, relative_angle)
+            return slope * energy(moment)
 
-        gear.law = new
         draft.add_relative_torque(name, relative, reaction)
         draft.add_channel(f"{name}.share", "1", f"share by which {name} raises the stiffness", lambda m: self.share(angle(m)))

@@ -24,7 +24,8 @@ class ConnectionDraft:
     beside it; ``series`` holds elements in line with both, from the inside out, and ``yielding`` one
     more outside them, which may have a corner; ``terms`` are kinematic errors that add to the stretch;
     ``bodies`` names the body at each flange.  ``gap`` is the full width about zero in which the law has
-    no elastic torque, 0 where it has none or nobody knows.
+    no elastic torque, 0 where it has none or nobody knows.  ``own`` and ``own_gap`` are those of the part itself: a change of
+    ``own`` lies inside whatever changes ``law``, before it or after.
     """
 
     name: str
@@ -37,6 +38,12 @@ class ConnectionDraft:
     series: list[Series] = field(default_factory=list)
     yielding: Series | None = None
     gap: float = 0.0
+    own: Torque = field(init=False)
+    own_gap: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.own, self.own_gap = self.law, self.gap
+        self.law = lambda moment, stretch, rate: self.own(moment, stretch, rate)
 
     def wrap(self, change: Callable[[Torque], Torque]) -> None:
         """Replace the law by ``change(law)``."""

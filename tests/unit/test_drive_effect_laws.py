@@ -327,6 +327,30 @@ def test_a_stiffness_beside_the_law_varies_by_as_much_at_each_torque_and_makes_n
     np.testing.assert_allclose(kinetic + potential, (kinetic + potential)[0], rtol=1e-6)
 
 
+@pytest.mark.parametrize("first", ["it", "lost"])
+@pytest.mark.parametrize("gap", [0.0, 4e-4])
+def test_a_stiffness_beside_the_law_varies_beyond_lost_motion_whichever_comes_first(gap: float, first: str) -> None:
+    """d is what is left of the twist by the gear's own gap and the lost motion; torques on both sides are slopes of r k d^2/2."""
+    width, shift = 1e-3, {"motor": 0.8, "load": 0.8 / 50.0 - 3e-3}
+    law = hm.PiecewiseLinearStiffness(lost_motion=gap, stiffness_1=1e4, stiffness_2=2e4, stiffness_3=3e4, torque_1=5.0, torque_2=15.0)
+    effects = {"it": hm.ParallelStiffnessVariation(variation=0.5, phase=0.3), "lost": hm.LostMotion(width=width)}
+    order = sorted(effects, key=lambda name: name != first)
+
+    def torques(*names: str) -> tuple[float, float]:
+        scene = drive(law)
+        for name in names:
+            scene = scene.with_effect(effects[name], at="gear", name=name)
+        network = scene.network()
+        found = network.torques(network.moment(0.0, shift, dict.fromkeys(shift, 0.0), {}))
+        return float(found["motor"]), float(found["load"])
+
+    (motor, load), (bare_motor, bare_load) = torques(*order), torques("lost")
+    beyond, angle = 3e-3 - 0.5 * gap - 0.5 * width, 2.0 * 0.8 + 0.3
+    assert load - bare_load == pytest.approx(0.5 * math.sin(angle) * 1e4 * beyond, rel=1e-6)
+    reaction = -0.5 * 2.0 * math.cos(angle) * 0.5e4 * beyond**2
+    assert motor - bare_motor == pytest.approx(reaction - (load - bare_load) / 50.0, rel=1e-6)
+
+
 def test_stiffness_at_twice_a_mode_makes_it_grow_as_mathieu_says() -> None:
     inertia, stiffness, variation = 0.5, 1e4, 0.1
     frequency = math.sqrt(stiffness / inertia)
