@@ -28,9 +28,10 @@ class ParallelStiffnessVariation(StiffnessVariation):
     with k the stiffness of the gear's own law at zero twist, just beyond the edge of its gap where it has one, and d the twist beyond that
     edge, less what lost motion and the like take off before it comes to the law, whether these effects come first or later.  Where
     T is a straight line it is ``StiffnessVariation``; where it hardens, that varies in proportion to the torque and this one to the twist.
-    Torque and reaction come from the one potential; beside a film that rounds a gap the small reaction is off there.
+    Torque and reaction come from the one potential.
 
     Source: time-varying mesh stiffness k(t) f(x) with backlash, Kahraman, Singh, J. Sound and Vibration 146 (1991) 135.
+    Leaves out a change of damping with angle, and in the small reaction that a film rounds the corners of a gap.
     """
 
     def vary(self, gear: ConnectionDraft, share: Callable[[Moment], Value]) -> Callable[[Moment], Value]:
