@@ -194,6 +194,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.steep_crack": ("SteepCrack",),
     "effects.keyway": ("Keyway",),
     "effects.whole_shaft_effect": ("WholeShaftEffect",),
+    "effects.inertia_variation": ("InertiaVariation",),
     "effects.internal_damping": ("InternalDamping",),
     "effects.relaxing_damping": ("RelaxingDamping",),
     "effects.shaft_stiffness_asymmetry": ("ShaftStiffnessAsymmetry",),

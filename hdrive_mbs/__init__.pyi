@@ -147,6 +147,7 @@ from hdrive_mbs.effects.hertzian_clearance import HertzianClearance as HertzianC
 from hdrive_mbs.effects.hertzian_rub import HertzianRub as HertzianRub
 from hdrive_mbs.effects.hidden_mode import HiddenMode as HiddenMode
 from hdrive_mbs.effects.hidden_mode_support import HiddenModeSupport as HiddenModeSupport
+from hdrive_mbs.effects.inertia_variation import InertiaVariation as InertiaVariation
 from hdrive_mbs.effects.inner_race_pass import InnerRacePass as InnerRacePass
 from hdrive_mbs.effects.inner_race_pulses import InnerRacePulses as InnerRacePulses
 from hdrive_mbs.effects.internal_damping import InternalDamping as InternalDamping

@@ -36,6 +36,12 @@ def gears(network: Network) -> tuple[str, ...]:
     return tuple(e.name for e in network.elements if isinstance(e, Connection) and wanted <= set(e.flanges))
 
 
+def gear_flanges(network: Network, flange: str) -> tuple[str, ...]:
+    """Bodies at that flange of the gears: 'wave_generator', 'flexspline' or 'circular_spline'."""
+    meshes = set(gears(network))
+    return tuple(e.flanges[flange] for e in network.elements if isinstance(e, Connection) and e.name in meshes)
+
+
 def couplings(network: Network) -> tuple[str, ...]:
     """Torsional shafts and couplings, without the meshes of gears: where two parts are held together by friction."""
     meshes = set(gears(network))

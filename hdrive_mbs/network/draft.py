@@ -1,7 +1,7 @@
 """The network while it is being built: parts add to it, effects change it.
 
 A part or effect of a user's own needs only these methods: ``body``, ``connection``,
-``add_torque``, ``add_connection``, ``add_state``, ``prescribe`` and ``add_channel``; on rotor lines
+``add_torque``, ``vary_inertia``, ``add_connection``, ``add_state``, ``prescribe`` and ``add_channel``; on rotor lines
 also ``station``, ``add_station``, ``add_coordinate``, ``add_matrix`` and ``add_coupling``.
 """
 

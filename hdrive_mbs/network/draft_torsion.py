@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from hdrive_mbs.errors import LawError, PlaceError
+from hdrive_mbs.errors import LawError, ParameterError, PlaceError
 from hdrive_mbs.expression import TraceError, Value, gradient
 from hdrive_mbs.network.connection_draft import ConnectionDraft, Torque
 from hdrive_mbs.network.draft_channels import DraftChannels
@@ -13,6 +13,7 @@ from hdrive_mbs.network.elements import AppliedTorque, Connection, Element, Stat
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import State
 from hdrive_mbs.network.node import Node
+from hdrive_mbs.network.varying_inertia import Share, VaryingInertia
 
 Change = Callable[[Callable[[Moment], Value]], Callable[[Moment], Value]]
 """Torque of a moment -> what reaches the body in its place."""
@@ -25,6 +26,7 @@ class DraftTorsion(DraftChannels):
         super().__init__(nodes, flanges)
         self._motions: dict[str, Callable[[Value], Value]] = {}
         self._states: dict[str, State] = {}
+        self._varying: dict[str, VaryingInertia] = {}  # by node
         self._finished: tuple[Element, ...] = ()
 
     def add_connection(
@@ -78,6 +80,39 @@ class DraftTorsion(DraftChannels):
                 f"that only turn. Places where it can be done: {', '.join(known) or 'none'}."
             )
         self._nodes[node.name] = replace(node, inertia=node.inertia + inertia)
+
+    def vary_inertia(
+        self, place: str, share: Share, most: float, asked_by: str = "This"
+    ) -> tuple[Callable[[Moment], Value], Callable[[Moment], Value]]:
+        """Torque and energy of an inertia that varies by a share of that at the place (see VaryingInertia).
+
+        most : largest size of the share
+
+        Raises PlaceError where the place moves across the axis, ParameterError where shares may leave no inertia.
+        """
+        node = self.body(place, asked_by)
+        if node.lateral:
+            raise PlaceError(
+                f"{asked_by} varies the inertia of {place!r} about its axis, which moves across the axis too: masses that make an inertia "
+                "vary would shake it. Put it on a body that only turns."
+            )
+        varying = self._varying.setdefault(
+            node.name,
+            VaryingInertia(lambda: self._nodes[node.name], lambda: self._finished, lambda: self._given_acceleration(node.name)),
+        )
+        if not varying.most + most < 1.0:
+            raise ParameterError(
+                f"{asked_by} varies the inertia of {place!r} by up to {most:g} of it, with what else varies there {varying.most + most:g}: "
+                "must be below 1 together, or there is none left at some angle."
+            )
+        return varying.add(share, most)
+
+    def _given_acceleration(self, name: str) -> Callable[[Moment], Value] | None:
+        """Acceleration [rad/s^2] of a place whose motion is given."""
+        if name not in self._motions:
+            return None
+        twice = gradient(gradient(self._motions[name]))
+        return lambda moment: twice(moment.time)
 
     def add_relative_torque(self, name: str, factors: dict[str, float], torque: Torque, *, dissipative: bool = False) -> None:
         """A torque(moment, x, dx/dt) that resists along  x = sum(f_i q_i), with its reactions; no twist channels."""

@@ -132,6 +132,7 @@ EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.FilmBacklash(backlash=1e-3, film=1e-4, film_damping=0.1), "input_shaft"),
     (hm.StiffnessVariation(variation=0.1, order=2.0, follows="flexspline"), "gear"),
     (hm.ParallelStiffnessVariation(variation=0.1, order=1.0), "gear"),
+    (hm.InertiaVariation(variation=0.2, order=1.0, phase=0.3), "load"),
     (hm.Cogging(amplitude=0.1, order=24.0, second_amplitude=0.02), "motor"),
     (hm.HarmonicKinematicError(amplitude=1e-4, third_amplitude=1e-5), "gear"),
     (hm.BeatingKinematicError(amplitude=1e-4, modulation=0.2, modulation_phase=0.7), "gear"),
