@@ -15,6 +15,7 @@ from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.gather import Evidence
 from hdrive_mbs.diagnosis.result import Diagnosis
 from hdrive_mbs.diagnosis.tasks import Found
+from hdrive_mbs.diagnosis.unevenness import patches, unevenness
 from hdrive_mbs.diagnosis.verdict import Claim, judge
 
 LOOKS = 30
@@ -27,6 +28,7 @@ def raw_of(evidence: Evidence, groups: Mapping[str, Sequence[str]]) -> dict[str,
     return {
         "nominal": _fit(evidence.nominal),
         "null": _fit(evidence.null),
+        "uneven": unevenness(evidence.fine, patches(evidence.fine, evidence.null)),
         "null_coarse": _fit(evidence.single.base),
         "singles": [_found(item, groups) for item in evidence.singles],
         "pairs": [_found(item, groups) for item in evidence.pairs],
@@ -111,9 +113,10 @@ def _label(pair: Sequence[str]) -> Label:
 
 
 def judged(raw: Mapping[str, Any]) -> Claim:
-    """The verdict that the present rules and constants give on stored figures."""
+    """The verdict that the present rules and constants give on stored figures, among them how uneven a gap is where that is stored."""
     pairs = [_stored(item) for item in raw["pairs"]]
-    return judge(math.sqrt(raw["null"]["fit"] * raw["null"]["held"]), [_stored(item) for item in raw["singles"]], pairs)
+    misfit = math.sqrt(raw["null"]["fit"] * raw["null"]["held"])
+    return judge(misfit, [_stored(item) for item in raw["singles"]], pairs, uneven=raw.get("uneven", 0.0))
 
 
 def finding_again(raw: Mapping[str, Any]) -> Finding:

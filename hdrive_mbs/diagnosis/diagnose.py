@@ -40,6 +40,7 @@ from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.diagnosis.suspects import Label
 from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.team import Team
+from hdrive_mbs.diagnosis.unevenness import patch_words, patches, unevenness
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import NONE, UNKNOWN, Claim, judge, left
 from hdrive_mbs.diagnosis.verify import Verified, verified
@@ -181,7 +182,8 @@ def factors_of(bench: Bench) -> tuple[Factor, ...]:
 
 def _concluded(evidence: Evidence) -> tuple[Claim, Fitted]:
     """What the fits of a case say, and the fit that stands for it."""
-    claim = judge(left(evidence.null), evidence.singles, evidence.pairs)
+    uneven = unevenness(evidence.fine, patches(evidence.fine, evidence.null))
+    claim = judge(left(evidence.null), evidence.singles, evidence.pairs, uneven=uneven)
     return claim, evidence.null if claim.fit is None or claim.kind == "unknown" else claim.fit.fitted
 
 
@@ -223,6 +225,7 @@ def answer(
     if claim.tied:
         extras["next_records"] = records_to_take(bench, records, evidence, claim, notes)
     notes += [item.text for item in checked if not item.differs]
+    notes += patch_words(evidence.fine, patches(evidence.fine, best), best.hypothesis.label)
     notes += [f"{best.hypothesis.label}: the fit had not converged when it stopped." for _ in range(not best.converged)]
     return Diagnosis(
         scene=bench.scene,

@@ -17,6 +17,7 @@ from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.nearly import nearly_right
 from hdrive_mbs.diagnosis.suspects import Label
 from hdrive_mbs.diagnosis.tasks import Found
+from hdrive_mbs.diagnosis.unevenness import EVEN
 
 ODDS, PARAMETER_ODDS = 18.0, 4.5
 """Log odds below which an effect, and a parameter out of its tolerance, is not claimed.  There are many laws, which
@@ -32,7 +33,7 @@ is what a plant's detail is worth to one law or another (TRACE); and the part of
 least.  In our own rotor sets 9 to 18 the first of two so alike, 11 to 71 of log odds apart, was the right one in five of eight cases with
 known causes; internal damping of the shaft was taken for cross coupling of a bearing in two of the others."""
 CLEAN = 1.15
-"""Mean square of the refitted nominal model up to which its misfit counts as noise."""
+"""Mean square of the refitted nominal model up to which its misfit counts as noise, if it is spread as noise is (unevenness.py)."""
 EXPLAINED = 0.5
 """Share of the logarithm of the nominal misfit that a claim has to take away, of a gap that is not faint; with less the cause is unknown.
 Of 60 claims in gaps of FAINT to 2.6 in our own sets, opened, the 56 right ones took 0.52 and more of what no fit saw, and two of the four
@@ -97,10 +98,10 @@ NONE: Label = ("none", "")
 UNKNOWN: Label = ("unknown", "")
 
 
-def judge(null_misfit: float, found: Sequence[Found], pairs: Sequence[Found] = ()) -> Claim:
+def judge(null_misfit: float, found: Sequence[Found], pairs: Sequence[Found] = (), *, uneven: float = 0.0) -> Claim:
     """The verdict.
 
-    null_misfit : what the refitted nominal model leaves, see ``left``
+    null_misfit : what the refitted nominal model leaves, see ``left``;  uneven : how much of it comes and goes, see unevenness.py
     found : single causes on all samples, best first;  pairs : of causes, best first, their log odds those over the nominal model
     """
     found = _plain_first(found)
@@ -109,10 +110,10 @@ def judge(null_misfit: float, found: Sequence[Found], pairs: Sequence[Found] = (
     pair = _pair(found, pairs, best, null_misfit)
     chosen = pair or best
     if chosen is None:
-        kind = "none" if null_misfit <= CLEAN else "unknown"
-        return Claim(kind, None, (), _probabilities(found, None, null_misfit, False))
+        kind = "none" if null_misfit <= CLEAN and uneven <= EVEN else "unknown"
+        return Claim(kind, None, (), _probabilities(found, None, null_misfit, False, uneven))
     holds = stands(chosen, null_misfit) or (best is not None and 1.0 - left(best.fitted) / null_misfit >= LARGE)
-    probabilities = _probabilities(found, chosen, null_misfit, holds)
+    probabilities = _probabilities(found, chosen, null_misfit, holds, uneven)
     if not holds:
         return Claim("unknown", chosen, (), probabilities)
     alike = [(item, [item.suspect.label]) for item in singles] if chosen is best else [(item, _parts(item, found)) for item in pairs]
@@ -218,7 +219,7 @@ def kind_of(found: Found) -> str:
     return "sensor" if all(kind == "sensor" for kind in kinds) and not hypothesis.loose else "effect"
 
 
-def _probabilities(found: Sequence[Found], chosen: Found | None, null_misfit: float, stands: bool) -> dict[Label, float]:
+def _probabilities(found: Sequence[Found], chosen: Found | None, null_misfit: float, stands: bool, uneven: float) -> dict[Label, float]:
     """Of each label to be a cause.  They add up to 1 but for two causes claimed together, which both get the probability of the pair."""
     scores: dict[Label, float] = {NONE: 0.0}
     for item in found:
@@ -232,7 +233,7 @@ def _probabilities(found: Sequence[Found], chosen: Found | None, null_misfit: fl
     both = _parts(chosen, found) if chosen is not None and chosen not in found else []
     if both:
         scores = dict.fromkeys(both[:1], max(scores.values()) + PAIR / TEMPERATURE) | {k: v for k, v in scores.items() if k not in both}
-    if null_misfit > CLEAN or (chosen is not None and not stands):
+    if null_misfit > CLEAN or (chosen is not None and not stands) or (chosen is None and uneven > EVEN):
         best = chosen or max(found, key=lambda item: item.log_odds, default=None)
         after = null_misfit if best is None else left(best.fitted)
         fits = min(OTHER_AT_FIT + OTHER_PER_LOG * math.log(max(after, 1.0)), OTHER_MOST)

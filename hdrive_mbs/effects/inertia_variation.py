@@ -37,7 +37,7 @@ class InertiaVariation(Effect):
 
     kind: ClassVar[str] = "parametric"
     signature: ClassVar[str] = (
-        "torque at a fixed order of the body that grows with acceleration and with the square of speed; resonances that wander with the angle"
+        "torque at a fixed order of the body that grows with acceleration and the square of speed; resonances that wander with angle"
     )
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("variation", "phase"),)
     starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"order": (1.0, 2.0)}

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from benchmarks.withheld.case_score import interval
-from hdrive_mbs.diagnosis import nearly, second_cause, verdict
+from hdrive_mbs.diagnosis import nearly, second_cause, unevenness, verdict
 
 ROOT = Path(__file__).parents[2]
 OWN = ROOT / "benchmarks" / "withheld" / "own"
@@ -87,6 +87,7 @@ def test_the_figures_of_the_verdict_are_those_of_the_program() -> None:
     rest = f"of the logarithm of the rest or {verdict.COMPARABLE:.0%} of the first one's log odds".replace("%", " %")
     told = {
         "the refitted model counts as noise up to": f"{verdict.CLEAN}",
+        "... if of it there stands in stretches above the rest at most": f"{unevenness.EVEN}",
         "log odds that an effect needs, a parameter": f"{verdict.ODDS:g}, {verdict.PARAMETER_ODDS:g}",
         "what an effect has to take away at least": f"{verdict.TRACE}",
         "a claim has to take of the gap's logarithm, or a single cause of the gap itself": f"{verdict.EXPLAINED:.0%}, {verdict.LARGE:.0%}",
