@@ -17,6 +17,7 @@ import numpy as np
 from hdrive_mbs.call_arguments import cannot_be_called
 from hdrive_mbs.errors import KeywordError, ParameterError, unknown_place
 from hdrive_mbs.quantity import Quantity
+from hdrive_mbs.tracked import Tracked
 
 
 def parameter(
@@ -60,6 +61,9 @@ def option(doc: str, *, default: Any = dataclasses.MISSING, called_with: tuple[t
     called_with : of a field that takes a function the arguments that it gets, in each of the ways there are
     """
     return dataclasses.field(default=default, metadata={"doc": doc, "called_with": called_with})
+
+
+_FLOATS = (float, Tracked)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,7 +142,7 @@ class Described:
         for field, quantity in _checked(type(self)):
             value = getattr(self, field.name)
             if (
-                type(value) is float
+                type(value) in _FLOATS
                 and quantity is not None
                 and not quantity.sequence
                 and quantity.allows(value)
@@ -306,6 +310,8 @@ def _plain(values: Any, quantity: Quantity) -> tuple[float, ...] | None:
 
 
 def _as_float(where: str, value: Any, unit: str) -> float:
+    if type(value) is Tracked:
+        return value
     wanted = "must be a number" if unit == "1" else f"must be a number, in {unit}"
     if isinstance(value, (str, bytes, bool)):
         raise ParameterError(f"{where} = {value!r}: {wanted}.")

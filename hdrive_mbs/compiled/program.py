@@ -13,9 +13,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import numpy.typing as npt
 
-from hdrive_mbs.compiled.structure import Structure, shaped
+from hdrive_mbs.compiled.structure import Plan, Structure, shaped
 from hdrive_mbs.compiled.time_inputs import TIME, TimeInput, digest, time_input
 from hdrive_mbs.expression import Expression, Pieces, in_order
+from hdrive_mbs.tracked import Tracked, plain
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -34,10 +35,27 @@ class Table:
 
 
 @dataclass(frozen=True, eq=False)
+class Numbers:
+    """Where the constants of a program come from.
+
+    found : constants of the recorded expressions, in order; tracked ones where the fields of a scene were
+    """
+
+    found: tuple[float, ...]
+    plan: Plan
+
+    def constants(self, found: FloatArray) -> FloatArray:
+        """Those of the program, shape (..., program), from these of the expressions, shape (..., found)."""
+        values = np.concatenate([np.zeros((*found.shape[:-1], 1)), found], axis=-1)[..., self.plan.constants]
+        values[..., self.plan.inverses] = 1.0 / values[..., self.plan.inverses]
+        return np.asarray(values)
+
+
+@dataclass(frozen=True, eq=False)
 class Program:
     """A structure with its numbers.
 
-    constants : values that the steps "constant" refer to by position
+    constants : values that the steps "constant" refer to by position;  numbers : where they come from
     tables : what the steps "pieces" refer to
     inputs : what is known before a run; the first is the time
     """
@@ -46,6 +64,7 @@ class Program:
     constants: FloatArray
     tables: tuple[Table, ...]
     inputs: tuple[TimeInput, ...]
+    numbers: Numbers
 
 
 def program(rates: Sequence[Expression], readings: Sequence[Expression], variables: Sequence[str]) -> Program:
@@ -62,7 +81,9 @@ def program(rates: Sequence[Expression], readings: Sequence[Expression], variabl
         if len(arguments) == 2:
             form.append((operation, None, (place[id(arguments[0])], place[id(arguments[1])])))
         elif operation == "constant":
-            if data in WRITTEN or (id(node) in exponents and abs(data) <= 9.0 and (2.0 * data).is_integer()):
+            if type(data) is not Tracked and (
+                data in WRITTEN or (id(node) in exponents and abs(data) <= 9.0 and (2.0 * data).is_integer())
+            ):
                 form.append(("number", data, ()))
             else:
                 form.append(("constant", len(constants), ()))
@@ -75,15 +96,16 @@ def program(rates: Sequence[Expression], readings: Sequence[Expression], variabl
         else:
             form.append((operation, None, tuple([place[id(item)] for item in arguments])))
     results = tuple([place[id(item)] for item in rates]), tuple([place[id(item)] for item in readings])
-    plan = shaped(tuple(form), *results, tuple(variables)).plan(constants)
-    values = np.array([0.0, *constants])[plan.constants]
-    values[plan.inverses] = 1.0 / values[plan.inverses]
+    numbers = [plain(value) for value in constants]
+    plan = shaped(tuple(form), *results, tuple(variables)).plan(numbers)
+    taken = Numbers(tuple(constants), plan)
     pieces = [item for _, item in tables.values()]
     return Program(
         plan.structure,
-        values,
+        taken.constants(np.array(numbers)),
         tuple(_table(pieces[k]) for k in plan.tables),
         (TIME, *(time_input(ordered[k]) for k in plan.inputs)),
+        taken,
     )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.expression import Expression, Pieces, evaluate, in_order
+from hdrive_mbs.tracked import plain
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -66,7 +67,7 @@ def time_input(expression: Expression) -> TimeInput:
     number: dict[int, int] = {}
     content = []
     for node in in_order(expression):
-        data = digest(node.data) if node.operation == "pieces" else node.data
+        data = digest(node.data) if node.operation == "pieces" else plain(node.data)
         content.append((node.operation, data, *(number[id(item)] for item in node.arguments)))
         number[id(node)] = len(number)
     found = TimeInput(tuple(content), expression)

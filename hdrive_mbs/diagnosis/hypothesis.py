@@ -184,8 +184,11 @@ class Hypothesis:
 
         Raises ParameterError where values do not go together.
         """
-        values = self.values(z, to_run=to_run)
-        placed = []
+        return self.with_values(scene, self.values(z, to_run=to_run))
+
+    def with_values(self, scene: Scene, values: Mapping[str, float]) -> Scene:
+        """The scene with the effects, and with these numbers by path.  Raises ParameterError where they do not go together."""
+        values, placed = dict(values), []
         for item in self.added:
             prefix = f"{item.name}."
             own = {path.removeprefix(prefix): values.pop(path) for path in list(values) if path.startswith(prefix)}

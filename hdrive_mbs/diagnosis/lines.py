@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import copy
+import functools
 import gc
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -16,6 +17,7 @@ from hdrive_mbs.compiled.structure import Structure
 from hdrive_mbs.compiled.time_inputs import TimeInput
 from hdrive_mbs.diagnosis.following import following
 from hdrive_mbs.diagnosis.hypothesis import FloatArray, Hypothesis
+from hdrive_mbs.diagnosis.templates import Templates, alike
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.errors import LawError, ParameterError, PlaceError
 from hdrive_mbs.network.network import Network
@@ -68,6 +70,7 @@ class Lines:
             parts = ((name, part, other.parts[name]) for other in others if other is not first for name, part in first.parts.items())
             self._inputs[family[0]] = sorted({path for name, a, b in parts for path in _differing(a, b, name)})
         self._known: dict[tuple[int, Structure], tuple[Inputs, Inputs] | None] = {}
+        self._templates = Templates()
 
     def at(self, hypothesis: Hypothesis, points: Sequence[FloatArray], skipped: Collection[int] = frozenset()) -> list[list[Start | None]]:
         """For each trial the line at each point; None where values do not go together, and for trials that are skipped."""
@@ -97,7 +100,7 @@ class Lines:
         # whatever is skipped, of each view the same one is the first, and all start where the forces of the same one balance
         asked |= {self._view(k) for k in [k for k in family if self._trials[k].settled][:1]}
         family = [k for k in family if self._view(k) in asked]
-        networks = [_network(hypothesis, scene, point) for point in points]
+        network = functools.cache(lambda number: _network(hypothesis, scene, points[number]))
         bases: dict[tuple[object, ...], tuple[int, list[CompiledLine | None]]] = {}
         resting: list[dict[str, float]] | None = None
         found: dict[int, list[Start | None]] = {}
@@ -105,30 +108,48 @@ class Lines:
             trial = self._trials[k]
             view = self._view(k)
             if view not in bases:
-                bases[view] = k, [self._compiled(network, k) for network in networks]
+                bases[view] = k, self._built(k, hypothesis, scene, points, network)
             of, lines = bases[view]
             if of != k or trial.scene is not scene:
-                lines = [self._taking(k, line, hypothesis, point) for line, point in zip(lines, points, strict=True)]
+                lines = [self._taking(k, line, of, scene, hypothesis, point) for line, point in zip(lines, points, strict=True)]
             if trial.settled and resting is None:
                 resting = _resting(lines, trial.angles)
             rest = resting if trial.settled and resting is not None else [{} for _ in lines]
             found[k] = [None if line is None else Start(line, {**angles, **trial.angles}) for line, angles in zip(lines, rest, strict=True)]
         return found
 
+    def _built(
+        self, k: int, hypothesis: Hypothesis, scene: Scene, points: Sequence[FloatArray], network: Callable[[int], Network | None]
+    ) -> list[CompiledLine | None]:
+        """Lines of a scene as trial k sees it: from a template where there is one, else each of its own network."""
+        template = None
+        if points and not scene.network().is_lateral:
+            template = self._templates.of(hypothesis, scene, points[0], self._view(k), lambda made: self._compiled(made, k))
+        found = [None] * len(points) if template is None else template.lines([hypothesis.values(z, to_run=True) for z in points])
+        return [self._compiled(network(number), k) if line is None else line for number, line in enumerate(found)]
+
     def _view(self, k: int) -> tuple[str, ...]:
         """What of the scene a trial shows."""
         trial = self._trials[k]
         return (*sorted(trial.motions), "/", *_channels(trial))
 
-    def _taking(self, k: int, base: CompiledLine | None, hypothesis: Hypothesis, point: FloatArray) -> CompiledLine | None:
-        """The line of trial k, from that of another one with the same parameters if only inputs differ."""
+    def _taking(
+        self, k: int, base: CompiledLine | None, of: int, scene: Scene, hypothesis: Hypothesis, point: FloatArray
+    ) -> CompiledLine | None:
+        """The line of trial k, from that of another one (of) with the same parameters if only inputs differ.
+
+        scene : that the base was made of
+        """
         if base is None:
             return None
         key = (k, base.structure)
         own: CompiledLine | None = None
         if key not in self._known:
             own = self._own(k, hypothesis, point)
-            same = own is not None and _same(own.program, base.program)
+            same = own is not None and alike(own.program, base.program)
+            if own is not None and not same:  # built as the own one is: numbers that happen to be equal may have made one of two
+                other = self._compiled(_network(hypothesis, scene, point), of)
+                same = other is not None and _same(own.program, other.program)
             self._known[key] = (base.program.inputs, own.program.inputs) if same and own is not None else None
         known = self._known[key]
         if known is not None and known[0] == base.program.inputs:

@@ -51,7 +51,7 @@ _FLAT = {"constant", "sign", "floor", "ceil", "lt", "le", "eq", "and", "or", "no
 
 def _d_pow(node: Expression, a: Expression, b: Expression, da: Expression, db: Expression) -> Expression:
     result = b * power(a, b - 1.0) * da
-    if is_constant(b) and 0.5 <= float(b.data) < 1.0:
+    if is_constant(b) and 0.5 <= b.data < 1.0:
         result = _level(result, a, da)
     if not is_constant(db, 0.0):
         result = result + node * make("log", a) * db
@@ -66,7 +66,7 @@ def _level(slope: Expression, a: Expression, da: Expression) -> Expression:
 def _is_smooth(node: Expression) -> bool:
     if node.operation == "pow":
         exponent = node.arguments[1]
-        return is_constant(exponent) and float(exponent.data) >= 0.0 and float(exponent.data).is_integer()
+        return is_constant(exponent) and exponent.data >= 0.0 and exponent.data.is_integer()
     return node.operation in _SMOOTH
 
 

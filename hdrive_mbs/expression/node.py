@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from hdrive_mbs.tracked import Tracked
+
 Value = Any
 """A float, an array of floats or an Expression: what laws take and return."""
 
@@ -181,7 +183,7 @@ NUMERIC: dict[str, Callable[..., Any]] = {
 
 def constant(number: float) -> Expression:
     """A constant node."""
-    return Expression("constant", (), float(number))
+    return Expression("constant", (), number if type(number) is Tracked else float(number))
 
 
 def variable(name: str) -> Expression:
@@ -193,7 +195,7 @@ def as_node(value: Any) -> Expression:
     """The value as a node.  Raises TraceError for anything but a number or an expression."""
     if isinstance(value, Expression):
         return value
-    if type(value) is float:
+    if type(value) is float or type(value) is Tracked:
         return Expression("constant", (), value)
     if isinstance(value, (bool, int, float, np.number, np.bool_)):
         return constant(float(value))
@@ -213,7 +215,7 @@ def make(operation: str, *arguments: Expression) -> Expression:
         if item.operation != "constant":
             return Expression(operation, arguments)
     with np.errstate(all="ignore"):
-        return constant(float(NUMERIC[operation](*(np.float64(item.data) for item in arguments))))
+        return constant(NUMERIC[operation](*(item.data if type(item.data) is Tracked else np.float64(item.data) for item in arguments)))
 
 
 LOGICAL = frozenset(("lt", "le", "eq", "and", "or", "not"))
