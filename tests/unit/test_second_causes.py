@@ -107,6 +107,26 @@ def test_two_causes_may_show_together_where_neither_shows_alone(
     assert judge(1088.0, [one]).kind == "unknown"
 
 
+@pytest.mark.parametrize(
+    ("seen", "odds", "other", "both"),
+    [
+        (1.53, 199_000.0, False, True),
+        (2.60, 199_000.0, False, False),  # what the fits saw is worse too
+        (1.53, 189_000.0, False, False),  # less than a tenth of the first one's log odds
+        (1.53, 199_000.0, True, False),  # a richer law of the first
+    ],
+)
+def test_a_second_cause_shows_by_its_odds_where_a_stretch_that_slips_rules_what_no_fit_saw(
+    fitted: tuple[Simulator, Fitted], seen: float, odds: float, other: bool, both: bool
+) -> None:
+    second = Added(hm.ViscousDrag(coefficient=0.01), "motor", "drag_2") if other else RIPPLE
+    one, two = found(fitted[1], (DRAG,), 2.53, 172_000.0), found(fitted[1], (DRAG, second), seen, odds)
+    one, two = (
+        dataclasses.replace(item, fitted=dataclasses.replace(item.fitted, chi_held=held)) for item, held in ((one, 2.23), (two, 4.05))
+    )
+    assert judge(628.0, [one], [two]).fit is (two if both else one)
+
+
 @pytest.mark.parametrize(("more", "alike"), [(0.0002, True), (-0.001, True), (0.0003, False)])
 def test_single_causes_that_leave_alike_are_not_told_apart_by_their_odds(
     fitted: tuple[Simulator, Fitted], more: float, alike: bool
