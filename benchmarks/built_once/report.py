@@ -35,8 +35,8 @@ def report(numbers: Mapping[str, Any]) -> str:
         [
             "# Lines built once",
             "",
-            f"{numbers['about']['processor']}. CPU seconds, least of {numbers['repeats']} batches of {numbers['sets']} parameter sets of the"
-            " drive bench; a run is 9 s at 2 kHz, as many side by side as there are lanes.",
+            f"{numbers['about']['processor']}. CPU seconds, least of {numbers['repeats']} batches of {numbers['sets']} parameter sets of"
+            " the drive bench; a run is 9 s at 2 kHz, as many side by side as there are lanes.",
             "",
             f"{len(with_one)} of {len(rows)} laws and places have a template. In the median a line from it takes {saved:.3f} of one that is"
             f" built, building takes {share:.2f} of building and running one record, and a template pays from {pays:.1f} lines on.",
