@@ -1,4 +1,4 @@
-"""The four ways of the benchmark of fits, on a valley in closed form, and its table."""
+"""The ways of the benchmark of fits, on a valley in closed form, and its table."""
 
 from __future__ import annotations
 
