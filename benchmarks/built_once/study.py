@@ -19,8 +19,8 @@ from models import drive_bench
 CHANNELS = ("motor_encoder", "load_encoder", "torque_sensor")
 SETS = 16
 """Parameter sets of a batch: about a Jacobian."""
-SAMPLES, EVERY, STEP = 18_001, 5e-4, 5e-4
-"""Of a run: a record of the bench, 9 s at 2 kHz."""
+SAMPLES, EVERY, STEP = 18_001, 5e-4, 2.5e-4
+"""Of a run: a record of the bench, 9 s at 2 kHz, in the steps that a diagnosis of it takes."""
 
 
 def study(*, quick: bool, repeats: int) -> dict[str, Any]:
