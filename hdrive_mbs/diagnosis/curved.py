@@ -30,7 +30,7 @@ from hdrive_mbs.diagnosis.normal_equations import normal_equations, promised
 
 FloatArray = npt.NDArray[np.float64]
 
-TINY = 1e-300
+TINY = 1e-200
 
 SHORT = 0.5
 """Share of what the undamped step promises: where no step gains as much, curved ones are tried."""

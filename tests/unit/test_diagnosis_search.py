@@ -311,6 +311,17 @@ def test_no_second_cause_is_claimed_beside_one_that_leaves_noise(simulator: Simu
         assert len(claim.fit.fitted.hypothesis.loose) == parts
 
 
+@pytest.mark.parametrize(("seen", "unseen", "kind"), [(0.9996, 1.0199, "effect"), (1.0085, 1.011, "unknown"), (1.0199, 0.9996, "effect")])
+def test_what_is_left_of_a_faint_gap_has_to_show_in_both_parts_of_the_samples(
+    simulator: Simulator, seen: float, unseen: float, kind: str
+) -> None:
+    """A quarter of the samples scatters by half a per cent: what stands above noise there alone may be noise."""
+    hypothesis = Hypothesis(factors_of(BENCH), (Added(hm.ViscousDrag(coefficient=0.01), "load", "drag"),))
+    fitted = dataclasses.replace(fit(simulator, hypothesis, hypothesis.start(), steps=0), chi_fit=seen, chi_held=unseen)
+    claim = judge(1.0133, [Found(Suspect(("viscous_drag", "load"), "ViscousDrag", (hypothesis,), (hypothesis,)), fitted, 320.0)])
+    assert claim.kind == kind
+
+
 @pytest.mark.parametrize(
     ("null", "leaves", "kind"),
     [
