@@ -48,9 +48,10 @@ FAINT, NOISE = 1.05, 1.004
 own open sets leave 0.995 to 1.0045).  Of a faint gap an effect has to take EXPLAINED too, of what stands above NOISE, or else another cause
 is there, of which it takes a part: a law that is nearly right leaves some per cent of what it stands for.  It rests on two such cases: c14
 of our own second drive set, c06 of an open one; that noise itself may stand above 1 on one more, a crack of our own tenth rotor set (c14,
-labels open): it took 1.0104 to 1.0072, and the right cause with every law leaves the same.  What is left has to stand above NOISE in the samples
-that were seen and in those that were not: of a play with log odds of 320 (c20 of our own nineteenth drive set, opened) 0.9996 was left of the
-one and 1.02 of the other, of which the refitted model left 1.024, and it was called unknown."""
+labels open): it took 1.0104 to 1.0072, and the right cause with every law leaves the same.
+What is left has to stand above NOISE in the samples that were seen and in those that were not: of a play with log odds of 320 (c20 of
+our own nineteenth drive set, opened) 0.9996 was left of the one and 1.02 of the other, of which the refitted model left 1.024, and it
+was called unknown."""
 TIED = 5.0
 """Difference of log odds within which two labels cannot be told apart."""
 PLAIN = 0.998
