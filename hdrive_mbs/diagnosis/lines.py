@@ -124,7 +124,7 @@ class Lines:
         """Lines of a scene as trial k sees it: from a template where there is one, else each of its own network."""
         template = None
         if points and not scene.network().is_lateral:
-            template = self._templates.of(hypothesis, scene, points[0], self._view(k), lambda made: self._compiled(made, k))
+            template = self._templates.of(hypothesis, scene, points[0], k, lambda made: self._compiled(made, k))
         found = [None] * len(points) if template is None else template.lines([hypothesis.values(z, to_run=True) for z in points])
         return [self._compiled(network(number), k) if line is None else line for number, line in enumerate(found)]
 

@@ -55,6 +55,14 @@ def test_each_law_has_a_template_that_gives_the_lines_that_are_built(candidate: 
             assert alike(line.program, compiled(hypothesis.scene(BENCH.scene, z, to_run=True).network()).program)
 
 
+def test_a_scene_as_it_is_has_none() -> None:
+    """As in the plans of a next experiment, which search nothing."""
+    kept = Templates()
+    bare = Hypothesis(factors=())
+    assert kept.of(bare, BENCH.scene, bare.start(), "view", compiled) is None
+    assert kept.of(bare, BENCH.scene, bare.start(), "view", compiled) is None
+
+
 def test_one_template_serves_all_that_differ_in_searched_numbers_and_no_others() -> None:
     kept = Templates()
     ripple = next(item for item in CANDIDATES if item.kind is hm.TorqueRipple)
@@ -90,6 +98,27 @@ class OutOfSight(TorqueEffect):
 def test_a_law_that_computes_out_of_sight_has_none() -> None:
     hypothesis = Hypothesis(factors_of(BENCH), (Added(OutOfSight(drag=0.1), "load", "it"),))
     assert Templates().of(hypothesis, BENCH.scene, hypothesis.start(), "view", compiled) is None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Particular(OutOfSight):
+    """Drag that takes nothing but plain floats.
+
+    tau = -c w
+
+    Source: made up.  Leaves out all else.
+    """
+
+    def torque(self, time: Value, angle: Value, speed: Value) -> Value:
+        if type(self.drag) is not float:
+            raise KeyError(self.drag)
+        return -self.drag * speed
+
+
+def test_a_law_that_fails_with_tracked_numbers_alone_has_none_and_is_built() -> None:
+    hypothesis = Hypothesis(factors_of(BENCH), (Added(Particular(drag=0.1), "load", "it"),))
+    assert Templates().of(hypothesis, BENCH.scene, hypothesis.start(), "view", compiled) is None
+    assert compiled(hypothesis.scene(BENCH.scene, hypothesis.start()).network()).program.constants.size
 
 
 @dataclass(frozen=True, kw_only=True)
