@@ -17,13 +17,17 @@ from benchmarks.withheld.methods import bench_of, records_of
 from benchmarks.writing import table
 from hdrive_mbs.diagnosis.diagnose import diagnose
 from hdrive_mbs.diagnosis.gather import Evidence
-from hdrive_mbs.diagnosis.unevenness import patches, unevenness
+from hdrive_mbs.diagnosis.unevenness import EVEN, patches, unevenness
 from hdrive_mbs.effects.probe_gain import ProbeGain
 from hdrive_mbs.effects.sensor_offset import SensorOffset
 from hdrive_mbs.writing import write_text
 
 CHEAP = {"drive": SensorOffset, "rotor": ProbeGain}
 """A candidate that is soon looked at: a search must have one."""
+WORDS = (
+    f"Mean squares in variances of the noise. Uneven: what of it stands in stretches above the rest; up to {EVEN} is called noise "
+    "where no cause shows."
+)
 HEADS = ("case", "fitted samples", "held-out samples", "uneven", "largest stretch")
 
 
@@ -50,7 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         rows.append(row(options.bench, folder))
         print("  ".join(rows[-1]), flush=True)
     if options.out is not None:
-        write_text(options.out, table(HEADS, rows) + "\n")
+        write_text(options.out, f"# What refitted models of the {options.bench} bench leave\n\n{WORDS}\n\n{table(HEADS, rows)}\n")
     return 0
 
 
