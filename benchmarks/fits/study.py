@@ -1,4 +1,4 @@
-"""The right law at the right place, fitted from where a search begins: by five ways, to the end."""
+"""The right law at the right place, fitted from where a search begins: by four ways, to the end."""
 
 from __future__ import annotations
 
@@ -24,7 +24,6 @@ from hdrive_mbs.diagnosis.curved import Valley
 from hdrive_mbs.diagnosis.diagnose import EVERY, factors_of
 from hdrive_mbs.diagnosis.differences import jacobian
 from hdrive_mbs.diagnosis.fit import fit
-from hdrive_mbs.diagnosis.from_the_best import PATIENT
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.search import fit_nominal
@@ -126,12 +125,6 @@ def with_long_differences(simulator: Simulator, hypothesis: Hypothesis, start: F
         return fit(simulator, hypothesis, start, steps=CONVERGED, share=FINE).z
 
 
-def patiently(simulator: Simulator, hypothesis: Hypothesis, start: FloatArray) -> FloatArray:
-    """The fit of the diagnosis, and from its end on with patience, as the best fits of a search that leave something."""
-    found = fit(simulator, hypothesis, start, steps=CONVERGED, share=FINE)
-    return fit(simulator, hypothesis, found.z, steps=PATIENT, share=FINE, begin=found.residuals, patient=True).z
-
-
 def scipys(simulator: Simulator, hypothesis: Hypothesis, start: FloatArray) -> FloatArray:
     """Trust region reflective of scipy on the plain squares, with the same Jacobian and priors and the same relative change as its end.
 
@@ -166,7 +159,6 @@ WAYS: dict[str, Callable[[Simulator, Hypothesis, FloatArray], FloatArray]] = {
     "curved": curved,
     "straight": straight,
     "long": with_long_differences,
-    "patient": patiently,
     "scipy": scipys,
 }
 """Name of a way -> function of simulator, hypothesis and start that returns where it ended."""

@@ -26,7 +26,7 @@ STRETCHES = 16
 BEYOND = 4.0
 """Standard deviations: of 200 stretches of white noise one exceeds the second in one case of 160, and both next to never."""
 EVEN = 0.005
-"""Mean square in such stretches up to which what is left may be noise.  Of 24 nulls of the drive bench and 8 of the rotor bench none leaves
+"""Mean square in such stretches up to which what is left may be noise.  Of 24 nulls of the drive bench and 4 of the rotor bench none leaves
 as much (benchmarks/withheld/evenness_drive.md, evenness_rotor.md); a brake that touched for two seconds left 0.018, c01 of our own
 eighteenth drive set, opened, and had been taken for noise: it leaves 1.03 in all, less than CLEAN."""
 MOST = 0.25
