@@ -225,7 +225,9 @@ def answer(
     if claim.tied:
         extras["next_records"] = records_to_take(bench, records, evidence, claim, notes)
     notes += [item.text for item in checked if not item.differs]
-    notes += patch_words(evidence.fine, patches(evidence.fine, best), best.hypothesis.label)
+    is_nominal = not best.hypothesis.added and not best.hypothesis.loose
+    told = "the refitted nominal model" if is_nominal else best.hypothesis.label
+    notes += patch_words(evidence.fine, patches(evidence.fine, best), told)
     notes += [f"{best.hypothesis.label}: the fit had not converged when it stopped." for _ in range(not best.converged)]
     return Diagnosis(
         scene=bench.scene,
