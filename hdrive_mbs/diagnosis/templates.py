@@ -1,6 +1,6 @@
 """Lines for many parameter sets of a hypothesis from one that was recorded with tracked numbers.
 
-Building a scene and recording its equations takes half as long as running it through a record.  Of sets that differ in searched numbers
+Building a scene and recording its equations takes about as long as running it through a record.  Of sets that differ in searched numbers
 alone the equations are the same, and their constants follow from the numbers (tracked.py).  Each template is held against a
 line that was built for other numbers before it is used, and again in its 2nd, 4th, 8th ... use; where it fails, or where a
 comparison in the making of the scene comes out otherwise, lines are built one by one.

@@ -47,6 +47,7 @@ class Draft(DraftBearings):
         bodies += self._bodies
         self._elements = [item.without(self._motions) if isinstance(item, MatrixElement) else item for item in self._elements]
         self._check_masses(bodies)
+        self._check_varying()
         self._add_weights()
         if not bodies:
             raise SceneError("The scene has no body that can move: every place is held or prescribed.")
@@ -103,6 +104,16 @@ class Draft(DraftBearings):
                     f"{body.name!r} has no inertia ({body.inertia:g} {unit}), so its acceleration is undefined. Give the ring of the "
                     "bearing mass and moments of inertia, put a Rotor there, or give the shaft a density."
                 )
+
+    def _check_varying(self) -> None:
+        """Refuse an inertia that varies where a matrix of masses couples its place to others: its torque is that of one inertia alone."""
+        for name in self._varying:
+            for item in self._elements:
+                if isinstance(item, MatrixElement) and name in item.coordinates and item.mass[item.coordinates.index(name)].any():
+                    raise SceneError(
+                        f"The inertia of {name!r} varies with its angle, but {item.name!r} joins masses there to others. "
+                        "Put what varies on a body of its own, connected by a shaft."
+                    )
 
     def _add_weights(self) -> None:
         if self._gravity == (0.0, 0.0, 0.0):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -10,7 +12,10 @@ from scipy.integrate import solve_ivp
 
 import hdrive_mbs as hm
 from hdrive_mbs.compiled.line import CompiledLine
-from hdrive_mbs.errors import ParameterError, PlaceError
+from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import ParameterError, PlaceError, SceneError
+from hdrive_mbs.network.draft import Draft
+from hdrive_mbs.quantities import parameter
 from models import rotor_bench
 
 TIGHT = hm.DormandPrince(relative_tolerance=1e-10, absolute_tolerance=1e-12, max_step=1e-3)
@@ -120,6 +125,31 @@ def test_what_cannot_be_is_refused() -> None:
         scene.network()
     with pytest.raises(PlaceError, match="moves across the axis too"):
         rotor_bench.build().with_effect(hm.InertiaVariation(variation=0.1), at="rotor_1")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SharedMass(Effect):
+    """A mass that hangs between two bodies.
+
+    tau = -m (dw_1/dt + dw_2/dt)
+
+    Source: made up.  Leaves out all else.
+    """
+
+    mass: float = parameter("kg m^2", "m", low=0.0)
+
+    tried: ClassVar[bool] = False
+
+    def apply(self, draft: Draft, place: str, name: str) -> None:
+        draft.add_matrix(name, (), ("motor", place), stiffness=np.zeros((2, 2)), mass=np.full((2, 2), self.mass))
+
+
+def test_where_masses_are_shared_with_other_bodies_it_is_refused() -> None:
+    """Its torque is that of the place's own inertia: a matrix of masses would make it another one."""
+    shared = arm().with_effect(SharedMass(mass=1e-4), at="arm", name="mass")
+    shared.network()
+    with pytest.raises(SceneError, match="inertia of 'arm' varies with its angle, but 'mass' joins masses there"):
+        shared.with_effect(hm.InertiaVariation(variation=0.1), at="arm").network()
 
 
 @pytest.mark.parametrize("shared", [False, True])

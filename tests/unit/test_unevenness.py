@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from benchmarks.withheld import evenness
 from hdrive_mbs.diagnosis.simulator import Segment
 from hdrive_mbs.diagnosis.unevenness import EVEN, SAMPLES, STRETCHES, patch_words, patches, unevenness
 from hdrive_mbs.diagnosis.verdict import CLEAN, NONE, UNKNOWN, judge
@@ -107,3 +109,16 @@ def test_a_gap_that_comes_and_goes_is_no_noise_however_small() -> None:
     assert max(kept.probabilities, key=kept.probabilities.__getitem__) == NONE
     assert max(lost.probabilities, key=lost.probabilities.__getitem__) == UNKNOWN
     assert judge(1.1 * CLEAN, []).kind == "unknown"
+
+
+def test_the_command_tells_each_case_of_a_folder_or_those_that_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+    monkeypatch.setattr(evenness, "row", lambda bench, folder: (folder.name, bench, "1.0000", "0.00000", ""))
+    out = tmp_path / "told.md"
+    assert evenness.main(["--bench", "drive", str(tmp_path), "--out", str(out)]) == 0
+    text = out.read_text("utf-8")
+    assert f"up to {EVEN} is called noise" in text
+    assert [line.split("|")[1].strip() for line in text.splitlines() if line.startswith("| ")] == ["case", "a", "b"]
+    assert evenness.main(["--bench", "rotor", str(tmp_path), "b", "--out", str(out)]) == 0
+    assert "| a " not in out.read_text("utf-8")
