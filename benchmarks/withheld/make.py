@@ -23,7 +23,7 @@ import numpy as np
 from benchmarks.withheld import sealing
 from benchmarks.withheld.bench import BENCHES, load
 from benchmarks.withheld.folder import write_case
-from benchmarks.withheld.mixture import NULLS, PAIRS, SHARES, Site, mixture, singles
+from benchmarks.withheld.mixture import NULLS, PAIRS, SHARES, UNLISTED, Site, mixture, singles
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -38,6 +38,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--causes", help="names of causes, separated by commas: one of these in every case; for open sets")
     parser.add_argument("--nulls", action="store_true", help="nothing planted in any case: for the rate of false alarms")
     parser.add_argument("--pairs", action="store_true", help="two causes in every case: for the share of which both are found")
+    parser.add_argument("--unlisted", action="store_true", help="a cause without a name in every case: for the share answered unknown")
     parser.add_argument("--noise", choices=("stated", "coloured"), default="stated", help="coloured: part of the white noise has a memory")
     parser.add_argument("--jobs", type=int, default=1, help="processes (default 1)")
     options = parser.parse_args(arguments)
@@ -49,10 +50,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not options.open and key.exists():
         parser.error(f"{key} exists already; name a new --key, a key is never overwritten")
 
-    if options.causes and options.nulls:
-        parser.error("--nulls plants nothing; leave --causes away")
-    if options.pairs and (options.causes or options.nulls):
-        parser.error("--pairs plants two causes that it draws; leave --causes and --nulls away")
+    said = [f"--{name}" for name in ("causes", "nulls", "pairs", "unlisted") if getattr(options, name)]
+    if len(said) > 1:
+        parser.error(f"{' and '.join(said)}: each says what all cases hold; give one of them")
     if options.causes and not options.open:
         parser.error("--causes says what a set holds; it goes with --open")
     names = tuple(options.causes.split(",")) if options.causes else ()
@@ -61,7 +61,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"--causes {','.join(unknown)}: the {options.bench} bench has {', '.join(known)}")
 
     seed = options.seed if options.seed is not None else secrets.randbits(63)
-    shares = NULLS if options.nulls else PAIRS if options.pairs else SHARES
+    shares = NULLS if options.nulls else PAIRS if options.pairs else UNLISTED if options.unlisted else SHARES
     labels = make_set(options.bench, options.cases, seed, options.out, noise=options.noise, jobs=options.jobs, names=names, shares=shares)
     if options.open:
         for case, truth in labels.items():
@@ -75,6 +75,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "noise": options.noise,
         "nulls": options.nulls,
         "pairs": options.pairs,
+        "unlisted": options.unlisted,
     }
     sealing.write_key(key, sealed, about)
     sealing.write_commitments(options.out, sealed)

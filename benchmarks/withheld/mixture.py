@@ -14,6 +14,8 @@ NULLS = {kind: float(kind == "null") for kind in KINDS}
 """Nothing but nulls."""
 PAIRS = {kind: float(kind == "pair") for kind in KINDS}
 """Nothing but pairs."""
+UNLISTED = {kind: float(kind == "unlisted") for kind in KINDS}
+"""Nothing but causes without a name."""
 Site = tuple[str, str]  # name and place
 
 

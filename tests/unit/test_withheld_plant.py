@@ -268,6 +268,10 @@ def lost(made: Specimen, *, shafts: Sequence[str] = ("input", "output")) -> tupl
     held -= p.load.weight * (
         np.cos(d + p.load.weight_phase) + 0.5 * p.load.weight_second * np.cos(2 * d + p.load.weight_second_phase)
     )  # fmt: skip
+    slack = d - p.load.cable_angle
+    slope = np.hypot(slack, p.load.cable_width)
+    bent = p.load.cable_width**2 * np.arcsinh(slack / (p.load.cable_width or 1.0))
+    held += 0.25 * p.load.cable * (slack**2 + slack * slope + bent)  # the integral of the hyperbola
     heat = b.motor_viscous * wa**2 + b.wave_viscous * wb**2 + b.load_viscous * wd**2 + b.flex_damping * rate**2
     if "input" in shafts:
         held += 0.5 * b.input_stiffness * (a - y[:, line.WAVE]) ** 2
@@ -283,6 +287,7 @@ def lost(made: Specimen, *, shafts: Sequence[str] = ("input", "output")) -> tupl
 def with_every_lossless_effect() -> Specimen:
     made = specimen(NOMINAL).part("spring", asymmetry=0.2, asymmetry_twist=1e-4, modulation=0.1, modulation_order=2.0, modulation_phase=0.4)
     made = made.part("load", weight=8.0, weight_phase=0.7, weight_second=0.1, inertia_depth=0.2, inertia_phase=0.3)
+    made = made.part("load", cable=300.0, cable_angle=5e-3, cable_width=2e-3)
     error_table, output_table = orders(*with_side_bands(1e-4, 2.0, 0.3, 0.2, 0.01)), orders((2e-3, 2.0, 0.9), (3e-4, 40.0, 0.2))
     return replace(made, tables=made.tables._replace(wave_error=error_table, output_error=output_table))
 
@@ -550,7 +555,7 @@ def test_a_set_of_nulls_holds_no_cause_and_is_sealed_all_the_same(
     assert json.loads((tmp_path / "made.json").read_text(encoding="utf-8"))["nulls"] is True
     with pytest.raises(SystemExit):
         make.main(["--bench", "drive", "--nulls", "--open", "--causes", "other", "--out", str(tmp_path / "other")])
-    assert "--nulls plants nothing" in capsys.readouterr().err
+    assert "--causes and --nulls: each says what all cases hold" in capsys.readouterr().err
 
 
 def test_a_set_of_pairs_holds_two_different_causes_in_every_case(
@@ -563,7 +568,14 @@ def test_a_set_of_pairs_holds_two_different_causes_in_every_case(
     assert all(len({cause["effect"] for cause in truth}) == 2 for truth in truths)
     with pytest.raises(SystemExit):
         make.main(["--bench", "drive", "--pairs", "--nulls", "--out", str(tmp_path / "other")])
-    assert "--pairs plants two causes" in capsys.readouterr().err
+    assert "--nulls and --pairs: each says what all cases hold" in capsys.readouterr().err
+
+
+def test_a_set_of_causes_without_a_name_holds_one_in_every_case(quick: QuickBench, tmp_path: Path) -> None:
+    folder = tmp_path / "set"
+    assert make.main(["--bench", "drive", "--cases", "3", "--unlisted", "--seed", "3", "--open", "--out", str(folder)]) == 0
+    truths = [json.loads(path.read_text(encoding="utf-8"))["truth"] for path in sorted(folder.glob("*/truth.json"))]
+    assert [[cause["effect"] for cause in truth] for truth in truths] == [["unknown"]] * 3
 
 
 @needs_round_1

@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.withheld.case import Case, Cause
 from benchmarks.withheld.draws import log_uniform
-from benchmarks.withheld.plant.drive_causes import Put, friction, gear, others, parameters, sensor_faults, unlisted
+from benchmarks.withheld.plant.drive_causes import Put, friction, gear, later_unlisted, others, parameters, sensor_faults, unlisted
 from benchmarks.withheld.plant.drive_causes.finer_detail import with_finer_detail
 from benchmarks.withheld.plant.drive_train.excitation import RECORDS
 from benchmarks.withheld.plant.drive_train.nominal import NOMINAL, UNCERTAINTY, drawn
@@ -22,11 +22,12 @@ from benchmarks.withheld.plant.drive_train.sensors import measured
 from benchmarks.withheld.plant.drive_train.specimen import Specimen, specimen
 from benchmarks.withheld.plant.drive_visibility import Yardstick, signals
 
-_PUT: dict[str, Put] = {cause.name: put for part in (friction, gear, others, sensor_faults, unlisted) for cause, put in part.CAUSES}
+_EFFECTS, _REST = (friction, gear, others), (sensor_faults, unlisted, later_unlisted)
+_PUT: dict[str, Put] = {cause.name: put for part in (*_EFFECTS, *_REST) for cause, put in part.CAUSES}
 CAUSES: tuple[Cause, ...] = (
-    *(cause for part in (friction, gear, others) for cause, _ in part.CAUSES),
+    *(cause for part in _EFFECTS for cause, _ in part.CAUSES),
     *parameters.CAUSES,
-    *(cause for part in (sensor_faults, unlisted) for cause, _ in part.CAUSES),
+    *(cause for part in _REST for cause, _ in part.CAUSES),
 )
 
 Site = tuple[str, str]

@@ -2,37 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
-
 import numpy as np
 
-from benchmarks.withheld.case import Cause
 from benchmarks.withheld.draws import log_uniform, phase
-from benchmarks.withheld.plant.drive_causes import Entry, Put
+from benchmarks.withheld.plant.drive_causes import Entry
+from benchmarks.withheld.plant.drive_causes.nameless import entry, in_plant, in_sensor
 from benchmarks.withheld.plant.drive_train.specimen import Specimen
-
-Sizes = Callable[[np.random.Generator, str, Specimen, float], dict[str, float]]
-
-
-def _in_plant(part: str | dict[str, str], sizes: Sizes) -> Put:
-    """A cause that changes numbers of one part of the plant; a dictionary gives the part by place."""
-
-    def put(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
-        name = part if isinstance(part, str) else part[at]
-        changes = sizes(rng, at, specimen, strength)
-        return specimen.part(name, **changes).told("unknown", at, symbols={f"{name}_{key}": value for key, value in changes.items()})
-
-    return put
-
-
-def _in_sensor(sizes: Sizes) -> Put:
-    def put(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> Specimen:
-        changes: dict[str, Any] = sizes(rng, at, specimen, strength)
-        return replace(specimen, sensors=replace(specimen.sensors, **changes)).told("unknown", at, "sensor", changes)
-
-    return put
 
 
 def _shaking(rng: np.random.Generator, at: str, specimen: Specimen, strength: float) -> dict[str, float]:
@@ -116,23 +91,19 @@ def _jump(rng: np.random.Generator, at: str, specimen: Specimen, strength: float
 _DRAGS = {"motor": "motor_drag", "wave_generator": "wave_drag", "load": "load_drag"}
 
 
-def _entry(name: str, places: tuple[str, ...], put: Put) -> Entry:
-    return Cause(name=name, places=places, kind="unlisted"), put
-
-
 CAUSES: tuple[Entry, ...] = (
-    _entry("shaking_neighbour", ("load",), _in_plant("load", _shaking)),
-    _entry("inertia_by_angle", ("load",), _in_plant("load", _inertia_by_angle)),
-    _entry("brake_lag", ("load",), _in_plant("load", _brake_lag)),
-    _entry("stiffness_by_position", ("flexspline",), _in_plant("spring", _modulation)),
-    _entry("stiffness_curve", ("flexspline",), _in_plant("spring", _bulge)),
-    _entry("torque_fade", ("motor",), _in_plant("motor", _fade)),
-    _entry("relaxing_shaft", ("output_shaft",), _in_plant("shaft", _relaxing)),
-    _entry("slipping_clamp", ("output_shaft",), _in_plant("shaft", _slipping)),
-    _entry("rub_at_an_angle", ("motor", "wave_generator", "load"), _in_plant(_DRAGS, _rub)),
-    _entry("one_way_drag", ("motor", "wave_generator", "load"), _in_plant(_DRAGS, _one_way)),
-    _entry("warming_drag", ("motor", "wave_generator"), _in_plant(_DRAGS, _warming)),
-    _entry("brake_touches", ("motor", "wave_generator", "load"), _in_plant(_DRAGS, _grip)),
-    _entry("torque_sensor_lag", ("torque_sensor",), _in_sensor(_torque_lag)),
-    _entry("encoder_jump", ("load_encoder",), _in_sensor(_jump)),
+    entry("shaking_neighbour", ("load",), in_plant("load", _shaking)),
+    entry("inertia_by_angle", ("load",), in_plant("load", _inertia_by_angle)),
+    entry("brake_lag", ("load",), in_plant("load", _brake_lag)),
+    entry("stiffness_by_position", ("flexspline",), in_plant("spring", _modulation)),
+    entry("stiffness_curve", ("flexspline",), in_plant("spring", _bulge)),
+    entry("torque_fade", ("motor",), in_plant("motor", _fade)),
+    entry("relaxing_shaft", ("output_shaft",), in_plant("shaft", _relaxing)),
+    entry("slipping_clamp", ("output_shaft",), in_plant("shaft", _slipping)),
+    entry("rub_at_an_angle", ("motor", "wave_generator", "load"), in_plant(_DRAGS, _rub)),
+    entry("one_way_drag", ("motor", "wave_generator", "load"), in_plant(_DRAGS, _one_way)),
+    entry("warming_drag", ("motor", "wave_generator"), in_plant(_DRAGS, _warming)),
+    entry("brake_touches", ("motor", "wave_generator", "load"), in_plant(_DRAGS, _grip)),
+    entry("torque_sensor_lag", ("torque_sensor",), in_sensor(_torque_lag)),
+    entry("encoder_jump", ("load_encoder",), in_sensor(_jump)),
 )

@@ -1,4 +1,4 @@
-"""Speed controller and motor: torque command, lag, ripple, fading."""
+"""Speed controller and motor: torque command, lag, ripple, fading, saturation."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ class Motor(NamedTuple):
     """What the motor makes of the command; all zero at the nominal bench.
 
     Lag of second order: T'' = w_n^2 (command - T) - 2 z w_n T'.  Ripple (A + c T)(sin(n a + p) + r sin(2 n a + p_2))
-    and cogging B sin(m a + q) on top.  Fading: the torque constant falls by f (1 - exp(-t/t_f)).
+    and cogging B sin(m a + q) on top.  Fading: the torque constant falls by f (1 - exp(-t/t_f)).  Iron that saturates:
+    T becomes T/sqrt(1 + 2 s T^2), a share s T^2 less for a small one.
     """
 
     lag_frequency: float = 0.0  # rad/s, w_n; 0: no lag
@@ -31,6 +32,7 @@ class Motor(NamedTuple):
     cogging_phase: float = 0.0
     fade: float = 0.0  # 1, f
     fade_time: float = 1.0  # s
+    saturation: float = 0.0  # 1/(N m)^2, s
 
 
 @compiled
@@ -52,6 +54,8 @@ def shaft_side(time, torque, angle, m):
     """Torque on the rotor from the torque behind the lag."""
     if m.fade != 0.0:
         torque *= 1.0 - m.fade * (1.0 - math.exp(-time / m.fade_time))
+    if m.saturation != 0.0:
+        torque /= math.sqrt(1.0 + 2.0 * m.saturation * torque * torque)
     if m.ripple != 0.0 or m.ripple_share != 0.0:
         inside = m.ripple_order * angle
         wave = math.sin(inside + m.ripple_phase) + m.second * math.sin(2.0 * inside + m.second_phase)

@@ -56,7 +56,7 @@ from benchmarks.withheld.plant.drive_train.line import (
     Line,
     line,
 )
-from benchmarks.withheld.plant.drive_train.load import OddLoad, hidden_torque, shaking, weight
+from benchmarks.withheld.plant.drive_train.load import OddLoad, cable, hidden_torque, shaking, still_there, uneven, weight
 from benchmarks.withheld.plant.drive_train.motor import Motor, controller, lag_rate, shaft_side
 from benchmarks.withheld.plant.drive_train.shaft import OddShaft, slip_rate
 from benchmarks.withheld.plant.drive_train.springs import GearSpring, gear_spring, modulated, spring_torque
@@ -185,11 +185,12 @@ def rates(time, y, reference, brake, p, tables, memory, dy, report):
     if p.load.brake_time > 0.0:
         dy[BRAKE] = (brake - y[BRAKE]) / p.load.brake_time
         brake = y[BRAKE]
-    onto = out - b.load_viscous * y[LOAD_SPEED] - brake - weight(y[LOAD], p.load) + shaking(time, p.load)
+    brake *= uneven(y[LOAD], p.load)
+    onto = out - b.load_viscous * y[LOAD_SPEED] - brake - weight(y[LOAD], p.load) - cable(y[LOAD], p.load) + shaking(time, p.load)
     onto -= drag_torque(time, y[LOAD], y[LOAD_SPEED], p.load_drag)
     dry, dy[BRISTLE + 2] = dry_friction(LOAD_BANK, y[LOAD], y[LOAD_SPEED], y[BRISTLE + 2], p.load_friction, tables.banks, memory)
     onto -= dry
-    inertia = b.load_inertia
+    inertia = b.load_inertia * still_there(time, p.load)
     if p.load.hidden_share > 0.0:
         behind = hidden_torque(y[LOAD] - y[HIDDEN], y[LOAD_SPEED] - y[HIDDEN_SPEED], p.load)
         onto -= behind

@@ -46,6 +46,10 @@ class Sensors:
     torque_gain: float = 1.0
     torque_cubic: float = 0.0  # 1/(N m)^2: reading = gain T (1 + cubic T^2)
     torque_lag: float = 0.0  # s, first order
+    torque_loop: float = 0.0  # 1, share by which the reading lags behind the torque at every turn
+    torque_loop_limit: float = 1.0  # N m, by which the torque must have turned for the lag to turn as well
+    lost_count: float = 0.0  # rad, that the load's encoder loses where it passes one angle
+    lost_count_angle: float = 0.0  # rad
 
 
 def clean(moved: Motion, sensors: Sensors) -> dict[str, Array]:
@@ -54,7 +58,10 @@ def clean(moved: Motion, sensors: Sensors) -> dict[str, Array]:
     load_angle = sensors.load_encoder.seen(load_angle)
     time = np.arange(load_angle.size) / excitation.RATE
     load_angle = load_angle + sensors.load_encoder_jump * 0.5 * (1.0 + np.tanh((time - sensors.load_encoder_jump_time) / 2e-3))
+    turns = np.floor((moved.states[:, LOAD] - sensors.lost_count_angle) / (2.0 * np.pi))
+    load_angle = load_angle - sensors.lost_count * (turns - turns[0])
     torque = sensors.torque_gain * moved.output_torque * (1.0 + sensors.torque_cubic * moved.output_torque**2)
+    torque = torque + sensors.torque_loop * _loops(moved.output_torque, sensors.torque_loop_limit)
     return {
         "motor_torque": moved.command,
         "motor_angle": sensors.motor_encoder.seen(moved.states[:, MOTOR]),
@@ -89,6 +96,17 @@ def _lagged(values: Array, lag: float) -> Array:
     for k in range(1, values.size):
         found[k] = keep * found[k - 1] + (mean - keep) * values[k - 1] + (1.0 - mean) * values[k]
     return found
+
+
+def _loops(values: Array, limit: float) -> Array:
+    """Three stops side by side (Prandtl-Ishlinskii): each follows the values and slips at its limit; none moves at the start."""
+    total = np.zeros_like(values)
+    for stop in (0.25 * limit, 0.5 * limit, limit):
+        held = 0.0
+        for k in range(1, values.size):
+            held = min(max(held + values[k] - values[k - 1], -stop), stop)
+            total[k] += held / 3.0
+    return total
 
 
 def measured(
