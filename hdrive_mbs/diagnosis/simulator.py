@@ -17,7 +17,7 @@ from hdrive_mbs.diagnosis.noise import Free, Whitener
 from hdrive_mbs.diagnosis.resting import repeated
 from hdrive_mbs.diagnosis.robust import Blocks
 from hdrive_mbs.diagnosis.trial import Trial
-from hdrive_mbs.diagnosis.trial_runs import LARGEST, measured_in, run_trial
+from hdrive_mbs.diagnosis.trial_runs import LARGEST, Through, measured_in, run_trials
 from hdrive_mbs.errors import ParameterError, SimulationError
 
 FloatArray = npt.NDArray[np.float64]
@@ -30,7 +30,7 @@ BLOCKS = 12
 KEPT = 16
 """Runs of each trial that are kept: an effect of sensors or of the drive leaves some trials as they are."""
 AT_ONCE = 16
-"""Points that are run at once: more take memory for their whole courses, of which residuals keep a part."""
+"""Points that are run at once: their columns in all trials take memory, of which residuals keep a part."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class Simulator:
 
     trials : at least one;  step : longest step of the integration [s]
     every : compare only each such sample: a cheaper look, less sharp
-    parts : in which each step is divided;  again : whether what grows at it is run again with half of it, see ``run_trial``
+    parts : in which each step is divided;  again : whether what grows at it is run again with half of it, see ``run_trials``
 
     unseen : by name of a nominal parameter the trials in which it is not believed to show (``Simulator.knowing``)
 
@@ -150,12 +150,12 @@ class Simulator:
     ) -> list[FloatArray | None]:
         found: list[FloatArray | None] = [instead[k].copy() if skipped else np.empty(self.size) for k in range(len(points))]
         index = 0
-        starts = self._lines.at(hypothesis, points, skipped)
+        simulated = self._simulated(self._lines.at(hypothesis, points, skipped))
         for number, trial in enumerate(self.trials):
             if number in skipped:
                 index += len(trial.columns)
                 continue
-            for k, values in enumerate(self._simulated(number, starts[number])):
+            for k, values in enumerate(simulated[number]):
                 own = found[k]
                 if values is None or own is None:
                     found[k] = None
@@ -164,7 +164,7 @@ class Simulator:
                 for at, column in enumerate(trial.columns, index):
                     span, whiten, measured, there = self.segments[at].span, self._whiteners[at], self._measured[at], self._there[at]
                     left = measured - values[column]
-                    own[span] = np.clip(whiten(left if there is None else left * there, free), -LARGEST, LARGEST)
+                    np.clip(whiten(left if there is None else left * there, free), -LARGEST, LARGEST, out=own[span])
             index += len(trial.columns)
         return found
 
@@ -183,8 +183,7 @@ class Simulator:
 
     def columns_at(self, hypothesis: Hypothesis, points: Sequence[FloatArray]) -> list[list[Values | None]]:
         """Likewise at several points, for each of them: None for a trial that cannot be run."""
-        starts = self._lines.at(hypothesis, points)
-        found = [self._simulated(number, starts[number]) for number in range(len(self.trials))]
+        found = self._simulated(self._lines.at(hypothesis, points))
         return [[item[k] for item in found] for k in range(len(points))]
 
     def start_of(self, number: int, hypothesis: Hypothesis, point: FloatArray) -> dict[str, float]:
@@ -194,26 +193,33 @@ class Simulator:
             self._started = hypothesis, point.copy(), [{} if start is None else start.angles for start in found]
         return dict(self._started[2][number])
 
-    def _simulated(self, number: int, starts: Sequence[Start | None]) -> list[Values | None]:
-        """Values of the columns of a trial at its samples, by point; equal lines are run once."""
-        kept = self._kept[number]
-        keys = [None if start is None else start.key for start in starts]
-        new: dict[object, Start] = {key: start for key, start in zip(keys, starts, strict=True) if key not in kept and start is not None}
-        found: dict[object, Values | None] = dict(zip(new, self._run(self.trials[number], list(new.values())), strict=True))
-        for key in keys:
-            if key in kept:
-                kept.move_to_end(key)
-                found[key] = kept[key]
-        kept.update(found)
-        while len(kept) > KEPT:
-            kept.popitem(last=False)
-        return [None if key is None else found[key] for key in keys]
+    def _simulated(self, starts: Sequence[Sequence[Start | None]]) -> list[list[Values | None]]:
+        """For each trial the values of its columns at its samples, by point; equal lines are run once."""
+        keys = [[None if start is None else start.key for start in some] for some in starts]
+        new: dict[tuple[int, object], Start] = {}
+        for number, some in enumerate(starts):
+            for key, start in zip(keys[number], some, strict=True):
+                if start is not None and key not in self._kept[number]:
+                    new[number, key] = start
+        found = dict(zip(new, self._run([(number, start) for (number, _), start in new.items()]), strict=True))
+        for number, kept in enumerate(self._kept):
+            for key in keys[number]:
+                if key in kept:
+                    kept.move_to_end(key)
+                    found[number, key] = kept[key]
+            kept.update((key, values) for (of, key), values in found.items() if of == number)
+            while len(kept) > KEPT:
+                kept.popitem(last=False)
+        return [[None if key is None else found[number, key] for key in some] for number, some in enumerate(keys)]
 
-    def _run(self, trial: Trial, starts: Sequence[Start]) -> list[Values | None]:
-        lines, angles = [start.line for start in starts], [start.angles for start in starts]
-        self.runs += len(lines)
-        runs = run_trial(trial, lines, angles, self.step, parts=self.parts, again=self.again)
-        return [None if isinstance(run, SimulationError) else measured_in(trial, run) for run in runs]
+    def _run(self, starts: Sequence[tuple[int, Start]]) -> list[Values | None]:
+        """Values of the columns of trials from starts, each with the number of its trial."""
+        asked = [Through(self.trials[number], start.line, start.angles) for number, start in starts]
+        self.runs += len(asked)
+        found: dict[int, Values | None] = {}
+        for k, run in run_trials(asked, self.step, parts=self.parts, again=self.again):
+            found[k] = None if isinstance(run, SimulationError) else measured_in(asked[k].trial, run)
+        return [found[k] for k in range(len(asked))]
 
 
 def chi_square(residuals: FloatArray, mask: Mask) -> float:

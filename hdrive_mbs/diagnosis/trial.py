@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -62,3 +63,8 @@ class Trial:
     def times(self) -> FloatArray:
         """Times of the samples [s]."""
         return np.asarray(self.every * np.arange(self.samples), float)
+
+    @cached_property
+    def largest(self) -> Mapping[str, float]:
+        """The largest value that was measured of each column, without its sign, in the units of the columns."""
+        return {name: float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0)) for name, values in self.columns.items()}

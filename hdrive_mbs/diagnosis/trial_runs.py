@@ -1,9 +1,14 @@
-"""Lines run through a trial; with half the step where they grow at the one that was chosen for the nominal model."""
+"""Lines run through trials; with half the step where they grow at the one that was chosen for the nominal model.
+
+Lines of different trials go side by side where these have the same times: most questions are of one line or two, and a run of as
+many as the processor has lanes takes as long as one of one.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -17,37 +22,53 @@ FloatArray = npt.NDArray[np.float64]
 LARGEST = 1e7
 """Standard deviations of its noise that a column may be off: a run beyond it is far from the record, and beyond ten times what was
 measured besides it has grown of itself."""
+AT_ONCE = 16
+"""Lines whose whole courses are held in memory at a time."""
 
 
-def run_trial(
-    trial: Trial,
-    lines: Sequence[CompiledLine],
-    angles: Sequence[Mapping[str, float]],
-    step: float,
-    *,
-    parts: int = 1,
-    again: bool = True,
-) -> list[CompiledRun | SimulationError]:
-    """Each line through the trial from its angles [rad, m].
+@dataclass(frozen=True, eq=False)
+class Through:
+    """A line that is to go through a trial from its angles [rad, m]."""
+
+    trial: Trial
+    line: CompiledLine
+    angles: Mapping[str, float]
+
+
+def run_trials(
+    asked: Sequence[Through], step: float, *, parts: int = 1, again: bool = True
+) -> Iterator[tuple[int, CompiledRun | SimulationError]]:
+    """(number of what was asked, its run), in an order of its own.
 
     step : longest one of the integration [s];  parts : in which it is divided
     again : whether what grows is run again with half of it: what stiffens a line may need that
     """
-    fold = fold_of(trial)
-    every = trial.every / fold
-    inner = math.ceil(every / step * (1.0 - 1e-9))
+    times: dict[tuple[int, float], list[int]] = {}
+    for number, item in enumerate(asked):
+        fold = fold_of(item.trial)
+        times.setdefault((fold * item.trial.samples, item.trial.every / fold), []).append(number)
+    for (samples, every), numbers in times.items():
+        inner = math.ceil(every / step * (1.0 - 1e-9))
+        for first in range(0, len(numbers), AT_ONCE):
+            some = numbers[first : first + AT_ONCE]
+            found = dict(zip(some, _side_by_side([asked[k] for k in some], samples, every, inner * parts), strict=True))
+            if wild := [k for k, item in found.items() if again and _grows(item, asked[k].trial)]:
+                found.update(zip(wild, _side_by_side([asked[k] for k in wild], samples, every, 2 * inner * parts), strict=True))
+            yield from found.items()
 
-    def run(at: Sequence[int], parts: int) -> list[CompiledRun | SimulationError]:
-        some, where = [lines[k] for k in at], [angles[k] for k in at]
-        return run_many(some, fold * trial.samples, every, step=every / (inner * parts), angles=where, speeds=trial.speeds)
 
-    runs = run(range(len(lines)), parts)
-    limits = _limits(trial)
-    wild = [k for k, item in enumerate(runs) if again and _grows(item, limits)]
-    if wild:
-        for k, item in zip(wild, run(wild, 2 * parts), strict=True):
-            runs[k] = item
-    return runs
+def _side_by_side(asked: Sequence[Through], samples: int, every: float, inner: int) -> list[CompiledRun | SimulationError]:
+    angles, speeds = [item.angles for item in asked], [item.trial.speeds for item in asked]
+    return run_many([item.line for item in asked], samples, every, step=every / inner, angles=angles, speeds=speeds)
+
+
+def run_trial(
+    trial: Trial, lines: Sequence[CompiledLine], angles: Sequence[Mapping[str, float]], step: float, *, parts: int = 1
+) -> list[CompiledRun | SimulationError]:
+    """Each line through one trial from its angles [rad, m], as ``run_trials`` does."""
+    asked = [Through(trial, line, start) for line, start in zip(lines, angles, strict=True)]
+    found = dict(run_trials(asked, step, parts=parts))
+    return [found[k] for k in range(len(lines))]
 
 
 def measured_in(trial: Trial, run: CompiledRun) -> dict[str, FloatArray]:
@@ -61,15 +82,12 @@ def fold_of(trial: Trial) -> int:
     return 2 if any(item.late for item in trial.measured.values()) else 1
 
 
-def _limits(trial: Trial) -> dict[str, float]:
-    """Values beyond which a channel has grown of itself."""
-    found: dict[str, float] = {}
+def _grows(run: CompiledRun | SimulationError, trial: Trial) -> bool:
+    """Whether a run ended, or a channel of it is beyond what can have been measured."""
+    if isinstance(run, SimulationError):
+        return True
+    farthest: dict[str, float] = {}
     for name, item in trial.measured.items():
-        there = trial.columns[name][np.isfinite(trial.columns[name])]
-        limit = LARGEST * item.white + 10.0 * float(np.max(np.abs(there), initial=0.0))
-        found[item.channel] = max(limit, found.get(item.channel, 0.0))
-    return found
-
-
-def _grows(run: CompiledRun | SimulationError, limits: Mapping[str, float]) -> bool:
-    return isinstance(run, SimulationError) or any(np.max(np.abs(run.values[name])) > limit for name, limit in limits.items())
+        limit = LARGEST * item.white + 10.0 * trial.largest[name]
+        farthest[item.channel] = max(limit, farthest.get(item.channel, 0.0))
+    return any(run.values[name].max() > limit or run.values[name].min() < -limit for name, limit in farthest.items())
