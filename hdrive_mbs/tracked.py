@@ -24,10 +24,13 @@ Argument = tuple[bool, float]
 class Tape:
     """What was done with tracked numbers, in order.
 
+    simplified : whether a zero that is added and a one that multiplies are left out where the numbers are such: what is made then holds
+        for such numbers alone
     lost : what made a number a whole one, after which nothing is known; None as long as nothing did
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, simplified: bool = True) -> None:
+        self.simplified = simplified
         self.lost: str | None = None
         self._inputs: dict[str, int] = {}
         self._steps: list[tuple[np.ufunc | None, tuple[Argument, ...]]] = []
@@ -91,6 +94,11 @@ class Tape:
 
 def _argument(value: float) -> Argument:
     return (True, value.place) if type(value) is Tracked else (False, float(value))
+
+
+def is_kept(value: Any) -> bool:
+    """Whether it stays where it is even if it is zero or one: a tracked number whose tape is not simplified."""
+    return type(value) is Tracked and not value.tape.simplified
 
 
 def plain(value: Any) -> Any:

@@ -70,7 +70,7 @@ class Lines:
             parts = ((name, part, other.parts[name]) for other in others if other is not first for name, part in first.parts.items())
             self._inputs[family[0]] = sorted({path for name, a, b in parts for path in _differing(a, b, name)})
         self._known: dict[tuple[int, Structure], tuple[Inputs, Inputs] | None] = {}
-        self._templates = Templates()
+        self._templates = {held: Templates(held=held) for held in (False, True)}  # what is lateral has masses and stiffnesses in matrices
 
     def at(self, hypothesis: Hypothesis, points: Sequence[FloatArray], skipped: Collection[int] = frozenset()) -> list[list[Start | None]]:
         """For each trial the line at each point; None where values do not go together, and for trials that are skipped."""
@@ -121,11 +121,9 @@ class Lines:
     def _built(
         self, k: int, hypothesis: Hypothesis, scene: Scene, points: Sequence[FloatArray], network: Callable[[int], Network | None]
     ) -> list[CompiledLine | None]:
-        """Lines of a scene as trial k sees it: from a template where there is one, else each of its own network."""
-        template = None
-        if points and not scene.network().is_lateral:
-            template = self._templates.of(hypothesis, scene, points[0], k, lambda made: self._compiled(made, k))
-        found = [None] * len(points) if template is None else template.lines([hypothesis.values(z, to_run=True) for z in points])
+        """Lines of a scene as trial k sees it: from templates where there are any, else each of its own network."""
+        templates = self._templates[scene.network().is_lateral]
+        found = templates.lines(hypothesis, scene, points, k, lambda made: self._compiled(made, k))
         return [self._compiled(network(number), k) if line is None else line for number, line in enumerate(found)]
 
     def _view(self, k: int) -> tuple[str, ...]:

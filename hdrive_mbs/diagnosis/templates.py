@@ -4,13 +4,17 @@ Building a scene and recording its equations takes about as long as running it t
 alone the equations are the same, and their constants follow from the numbers (tracked.py).  Each template is held against a
 line that was built for other numbers before it is used, and again in its 2nd, 4th, 8th ... use; where it fails, or where a
 comparison in the making of the scene comes out otherwise, lines are built one by one.
+
+The masses and stiffnesses of a rotor line go through matrices, which numbers do not come out of as they went in.  Its templates
+hold all numbers but those of the effect that was added last, as looks from a fitted model do; they are made where that many lines
+with the same held numbers are asked for that it pays.
 """
 
 from __future__ import annotations
 
 import copy
 from collections import OrderedDict
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,8 +31,10 @@ Compile = Callable[[Network], CompiledLine | None]
 
 SAME = 1e-11
 """Relative difference of constants that rounding may make."""
-KEPT = 256
-"""Templates that are kept."""
+KEPT, KEPT_HELD = 256, 8
+"""Templates that are kept, of those that hold numbers fewer: the next ones hold others."""
+PAYS = 6
+"""Lines with the same held numbers for which a template is made: it takes as long as two or three, and its checks as many."""
 GOLDEN = 0.6180339887498949
 
 
@@ -60,31 +66,99 @@ class Template:
 
 
 class Templates:
-    """Templates of the hypotheses that were asked for last."""
+    """Templates of the hypotheses that were asked for last.
 
-    def __init__(self) -> None:
+    held : whether all numbers but those of the effect added last are held
+    """
+
+    def __init__(self, *, held: bool = False) -> None:
+        self._held, self._most = held, KEPT_HELD if held else KEPT
         self._kept: OrderedDict[Hashable, Template | None] = OrderedDict()
+        self._asked: OrderedDict[Hashable, int] = OrderedDict()
+        self._never: set[Hashable] = set()
 
-    def of(self, hypothesis: Hypothesis, scene: Scene, point: FloatArray, view: Hashable, compiled: Compile) -> Template | None:
-        """The template of a hypothesis on a scene; None where there can be none.
+    def lines(
+        self, hypothesis: Hypothesis, scene: Scene, points: Sequence[FloatArray], view: Hashable, compiled: Compile
+    ) -> list[CompiledLine | None]:
+        """The line at each point from templates, None where it has to be built.
 
-        point : one of those that are asked for;  view : of the trial that the line is for;  compiled : the line of a network
+        view : of the trial that the lines are for;  compiled : the line of a network
         """
-        key = _key(hypothesis, scene, point, view) if hypothesis.size else None  # with nothing to search there is one set alone
-        if key is None:
+        found: list[CompiledLine | None] = [None] * len(points)
+        values = [hypothesis.values(z, to_run=True) for z in points]
+        free = _Free.of(hypothesis, held=self._held)
+        alike_: dict[tuple[float, ...], list[int]] = {}
+        for k, item in enumerate(values):
+            alike_.setdefault(free.held(item), []).append(k)
+        for numbers in alike_.values():
+            template = self.of(hypothesis, scene, points[numbers[0]], view, compiled, asked=len(numbers))
+            if template is not None:
+                for k, line in zip(numbers, template.lines([values[k] for k in numbers]), strict=True):
+                    found[k] = line
+        return found
+
+    def of(
+        self, hypothesis: Hypothesis, scene: Scene, point: FloatArray, view: Hashable, compiled: Compile, *, asked: int = 1
+    ) -> Template | None:
+        """The template of a hypothesis on a scene; None where there can be none, or where none is worth while.
+
+        point : one of those that are asked for;  asked : how many
+        """
+        free = _Free.of(hypothesis, held=self._held)
+        law = _key(hypothesis, scene, point, view) if free.paths else None  # with nothing to search there is one set alone
+        if law is None or law in self._never:
             return None
+        key = law, free.held(hypothesis.values(point, to_run=True))
         if key not in self._kept:
-            self._kept[key] = _made(hypothesis, scene, point, compiled)
-            while len(self._kept) > KEPT:
+            if self._held and not self._is_worth_while(key, asked):
+                return None
+            self._kept[key] = _made(hypothesis, scene, point, compiled, free)
+            if self._kept[key] is None:
+                self._never.add(law)
+            while len(self._kept) > self._most:
                 self._kept.popitem(last=False)
         self._kept.move_to_end(key)
         found = self._kept[key]
         if found is not None:
             found.uses += 1
             if found.uses > 1 and found.uses & (found.uses - 1) == 0:
-                beside = _moved(hypothesis, point, 1.0)
+                beside = free.moved(hypothesis, point, 1.0)
                 if _agrees(found, hypothesis, scene, beside, compiled) is False:
                     found = self._kept[key] = None
+                    self._never.add(law)
+        return found
+
+    def _is_worth_while(self, key: Hashable, asked: int) -> bool:
+        self._asked[key] = self._asked.get(key, 0) + asked
+        while len(self._asked) > KEPT:
+            self._asked.popitem(last=False)
+        return self._asked[key] >= PAYS
+
+
+@dataclass(frozen=True)
+class _Free:
+    """What of a hypothesis a template leaves free: its coordinates from a first one on, and their paths."""
+
+    first: int
+    paths: frozenset[str]
+
+    @staticmethod
+    def of(hypothesis: Hypothesis, *, held: bool) -> _Free:
+        unknowns = hypothesis.unknowns
+        if held:
+            unknowns = hypothesis.added[-1].unknowns if hypothesis.added else ()
+        paths = frozenset(path for unknown in unknowns for path in unknown.values([0.0] * unknown.size))
+        return _Free(hypothesis.size - sum(unknown.size for unknown in unknowns), paths)
+
+    def held(self, values: Mapping[str, float]) -> tuple[float, ...]:
+        """The numbers that are held, in the order of their paths."""
+        return tuple(values[path] for path in sorted(values) if path not in self.paths)
+
+    def moved(self, hypothesis: Hypothesis, point: FloatArray, far: float) -> FloatArray:
+        """A point beside another one at which no two free coordinates have moved alike."""
+        part = np.array([(k * GOLDEN) % 1.0 for k in range(1, len(point) + 1)])
+        found = hypothesis.clipped(point + far * (1.0 + part) * hypothesis.steps(point))
+        found[: self.first] = point[: self.first]
         return found
 
 
@@ -112,29 +186,34 @@ def _key(hypothesis: Hypothesis, scene: Scene, point: FloatArray, view: Hashable
     return key
 
 
-def _moved(hypothesis: Hypothesis, point: FloatArray, far: float) -> FloatArray:
-    """A point beside another one at which no two coordinates have moved alike."""
-    part = np.array([(k * GOLDEN) % 1.0 for k in range(1, len(point) + 1)])
-    return hypothesis.clipped(point + far * (1.0 + part) * hypothesis.steps(point))
+def _made(hypothesis: Hypothesis, scene: Scene, point: FloatArray, compiled: Compile, free: _Free) -> Template | None:
+    """A template recorded beside a point and checked farther off.
 
-
-def _made(hypothesis: Hypothesis, scene: Scene, point: FloatArray, compiled: Compile) -> Template | None:
-    """A template recorded beside a point and checked farther off."""
-    here, elsewhere = _moved(hypothesis, point, 1.0), _moved(hypothesis, point, 2.7)
+    First one that holds where a number becomes zero or one too, as angles do where a search begins.  Of a law that makes numbers which
+    are one whatever comes in, a built line is shorter than such a template; then one that leaves out what a built line does.
+    """
+    here, elsewhere = free.moved(hypothesis, point, 1.0), free.moved(hypothesis, point, 2.7)
     values, others = (hypothesis.values(z, to_run=True) for z in (here, elsewhere))
-    if any(values[path] == others[path] for path in values):
+    if any(values[path] == others[path] for path in free.paths):
         return None
-    tape = Tape()
-    tracked = {path: tape.start(path, value) for path, value in values.items()}
+    for simplified in (False, True):
+        made = _recorded(hypothesis, scene, values, compiled, free, Tape(simplified=simplified))
+        if made is not None and _agrees(made, hypothesis, scene, elsewhere, compiled):
+            return made
+    return None
+
+
+def _recorded(
+    hypothesis: Hypothesis, scene: Scene, values: Mapping[str, float], compiled: Compile, free: _Free, tape: Tape
+) -> Template | None:
+    tracked = {path: tape.start(path, value) if path in free.paths else value for path, value in values.items()}
     try:
-        network = hypothesis.with_values(scene, tracked).network()
-        line = compiled(network)
+        line = compiled(hypothesis.with_values(scene, tracked).network())
     except Exception:  # whatever a law of one's own makes of such numbers: what is wrong with it shows where it is built without
         return None
-    if line is None or tape.lost is not None or any(type(state.initial) is Tracked for state in network.states):
+    if line is None or tape.lost is not None or any(type(state.initial) is Tracked for state in line.network.states):
         return None
-    made = Template(tape, line, tuple(values))
-    return made if _agrees(made, hypothesis, scene, elsewhere, compiled) else None
+    return Template(tape, line, tuple(path for path in values if path in free.paths))
 
 
 def _agrees(template: Template, hypothesis: Hypothesis, scene: Scene, point: FloatArray, compiled: Compile) -> bool | None:

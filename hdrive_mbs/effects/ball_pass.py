@@ -54,4 +54,4 @@ class BallPass(LateralEffect):
 
     def force(self, time: Value, angle: Value, speed: Value, x: Value, y: Value, x_rate: Value, y_rate: Value) -> tuple[Value, Value]:
         pulse = self.pulse(angle, speed)
-        return float(np.cos(self.direction)) * pulse, float(np.sin(self.direction)) * pulse
+        return np.cos(self.direction) * pulse, np.sin(self.direction) * pulse

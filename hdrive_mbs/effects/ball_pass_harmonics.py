@@ -59,4 +59,4 @@ class BallPassHarmonics(LateralEffect):
 
     def force(self, time: Value, angle: Value, speed: Value, x: Value, y: Value, x_rate: Value, y_rate: Value) -> tuple[Value, Value]:
         size = grown(speed, self.reference_speed, self.growth) * harmonics(angle, self.order, self.parts)
-        return float(np.cos(self.direction)) * size, float(np.sin(self.direction)) * size
+        return np.cos(self.direction) * size, np.sin(self.direction) * size

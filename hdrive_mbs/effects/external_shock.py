@@ -38,4 +38,4 @@ class ExternalShock(LateralEffect):
     def force(self, time: Value, angle: Value, speed: Value, x: Value, y: Value, x_rate: Value, y_rate: Value) -> tuple[Value, Value]:
         part = np.clip((time - self.start) / self.length, 0.0, 1.0)
         push = self.amplitude * np.sin(np.pi * part)
-        return float(np.cos(self.direction)) * push, float(np.sin(self.direction)) * push
+        return np.cos(self.direction) * push, np.sin(self.direction) * push

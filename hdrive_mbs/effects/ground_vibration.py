@@ -41,4 +41,4 @@ class GroundVibration(LateralEffect):
 
     def force(self, time: Value, angle: Value, speed: Value, x: Value, y: Value, x_rate: Value, y_rate: Value) -> tuple[Value, Value]:
         push = self.amplitude * np.sin(self.frequency * time + self.phase)
-        return float(np.cos(self.direction)) * push, float(np.sin(self.direction)) * push
+        return np.cos(self.direction) * push, np.sin(self.direction) * push

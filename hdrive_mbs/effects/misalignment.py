@@ -72,5 +72,5 @@ class Misalignment(LateralEffect):
             if amplitude != 0.0:
                 along = along + amplitude * np.cos(order * angle + phase)
                 across = across + self.roundness * amplitude * np.sin(order * angle + phase)
-        c, s = float(np.cos(self.direction)), float(np.sin(self.direction))
+        c, s = np.cos(self.direction), np.sin(self.direction)
         return c * along - s * across, s * along + c * across

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hdrive_mbs.tracked import Tracked
+from hdrive_mbs.tracked import Tracked, is_kept
 
 Value = Any
 """A float, an array of floats or an Expression: what laws take and return."""
@@ -244,10 +244,10 @@ def add(a: Expression, b: Expression) -> Expression:
     """a + b without useless zeros."""
     # sums, differences and products are made by the ten thousand for each point of a search: no call that can be spared
     first, second = a.operation, b.operation
-    if first == "constant" and a.data == 0.0:
+    if first == "constant" and not is_kept(a.data) and a.data == 0.0:
         return b
     if second == "constant":
-        if b.data == 0.0:
+        if not is_kept(b.data) and b.data == 0.0:
             return a
         if first == "constant":
             return make("add", a, b)
@@ -274,12 +274,13 @@ def multiply(a: Expression, b: Expression) -> Expression:
         a, b = b, a
     if a.operation == "constant":
         factor = a.data
-        if factor == 0.0:
-            return a
-        if factor == 1.0:
-            return b
-        if factor == -1.0:
-            return negate(b)
+        if not is_kept(factor):
+            if factor == 0.0:
+                return a
+            if factor == 1.0:
+                return b
+            if factor == -1.0:
+                return negate(b)
         if b.operation == "mul" and b.arguments[0].operation == "constant":
             return multiply(constant(factor * b.arguments[0].data), b.arguments[1])
         if b.operation == "constant":
@@ -290,7 +291,7 @@ def multiply(a: Expression, b: Expression) -> Expression:
 def divide(a: Expression, b: Expression) -> Expression:
     """a / b."""
     if is_constant(b) and b.data != 0.0:
-        return a if b.data == 1.0 else make("div", a, b)
+        return a if not is_kept(b.data) and b.data == 1.0 else make("div", a, b)
     return a if is_constant(a, 0.0) else make("div", a, b)
 
 

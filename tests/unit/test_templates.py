@@ -165,7 +165,7 @@ def test_lines_of_trials_are_the_same_with_and_without_templates(monkeypatch: py
     hypothesis = hypothesis_of(next(item for item in CANDIDATES if item.kind is hm.ViscousDrag and item.at == "load"))
     points = beside(hypothesis, 4)
     made = Lines(trials).at(hypothesis, points)
-    monkeypatch.setattr(Templates, "of", lambda *_: None)
+    monkeypatch.setattr(Templates, "of", lambda *_, **__: None)
     built = Lines(trials).at(hypothesis, points)
     for trial, own in zip(made, built, strict=True):
         for a, b in zip(trial, own, strict=True):
