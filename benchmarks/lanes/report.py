@@ -25,4 +25,17 @@ def report(numbers: Mapping[str, Any]) -> str:
             f" | {row['run_s'] / one / row['width']:.2f} | {row['apart']:.0e} |"
             for row in rows
         ]
+    records = numbers["records"]
+    lines += [
+        "",
+        "Lines of three records of the drive bench, each record by itself and all side by side:",
+        "",
+        "| lines of each record | each by itself [ms] | together [ms] | of each by itself | differ |",
+        "|---|---|---|---|---|",
+        *(
+            f"| {row['lines']} | {1e3 * row['apart_s']:.1f} | {1e3 * row['together_s']:.1f} | {row['together_s'] / row['apart_s']:.2f}"
+            f" | {row['differ']:.0e} |"
+            for row in records
+        ),
+    ]
     return "\n".join([*lines, ""])

@@ -72,6 +72,30 @@ def test_the_pairs_of_their_own_are_told_as_they_came_out() -> None:
     assert told == "{} ({:.2f} to {:.2f})".format(share(both), *interval(both["right"], both["of"]))
 
 
+def test_the_causes_without_a_name_of_their_own_are_told_as_they_came_out() -> None:
+    text = (ROOT / "docs" / "diagnosis.md").read_text("utf-8")
+    [told] = re.findall(r"^Causes without a name of their own on the drive bench, .+: (.+)\.$", text, re.MULTILINE)
+    found = json.loads((OWN / "drive_unlisted" / "results.json").read_text("utf-8"))["methods"]["diagnosis"]
+    caught, place = (
+        "{} ({:.2f} to {:.2f})".format(share(found[name]), *interval(found[name]["right"], found[name]["of"]))
+        for name in ("unknown caught", "place right")
+    )
+    assert told == f'answered "unknown" in {caught}, at the right place in {place}'
+
+
+def test_the_share_of_an_oracle_is_told_as_it_came_out() -> None:
+    """Of the last drive sets without a gap that an oracle was run for."""
+    text = (ROOT / "docs" / "diagnosis.md").read_text("utf-8")
+    [(first, last, told)] = re.findall(r"^Beside an oracle .+ drive sets (\d+) to (\d+): within 10 % in (.+)\.$", text, re.MULTILINE)
+    numbers = sorted(int(path.parent.name.partition("_")[2]) for path in OWN.glob("drive_[0-9]*/results.json"))
+    assert int(last) == numbers[-1]
+    oracles = [
+        json.loads((OWN / f"drive_{number}" / "results.json").read_text("utf-8"))["oracle"] for number in range(int(first), int(last) + 1)
+    ]
+    within, cases = sum(found["within"] for found in oracles), sum(found["cases"] for found in oracles)
+    assert told == "{} of {} ({:.2f} to {:.2f})".format(within, cases, *interval(within, cases))
+
+
 def test_the_documentation_leaves_out_no_set_since_the_first_it_names() -> None:
     """Of each bench the last ones without a gap: none that went badly is passed over."""
     for bench in ("drive", "rotor"):
