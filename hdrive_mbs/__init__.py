@@ -135,6 +135,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.lost_motion": ("LostMotion",),
     "effects.soft_windup": ("SoftWindup",),
     "effects.motor_effect": ("MotorEffect",),
+    "effects.motor_saturation": ("MotorSaturation",),
     "effects.motor_scale": ("MotorScale",),
     "effects.one_sided_stiffness": ("OneSidedStiffness",),
     "effects.power_drag": ("PowerDrag",),

@@ -171,6 +171,7 @@ from hdrive_mbs.effects.mesh_presliding_friction import MeshPreslidingFriction a
 from hdrive_mbs.effects.misalignment import Misalignment as Misalignment
 from hdrive_mbs.effects.moment_crack import MomentCrack as MomentCrack
 from hdrive_mbs.effects.motor_effect import MotorEffect as MotorEffect
+from hdrive_mbs.effects.motor_saturation import MotorSaturation as MotorSaturation
 from hdrive_mbs.effects.motor_scale import MotorScale as MotorScale
 from hdrive_mbs.effects.oil_whirl import OilWhirl as OilWhirl
 from hdrive_mbs.effects.oil_whirl_cycle import OilWhirlCycle as OilWhirlCycle

@@ -64,6 +64,9 @@ class Effect(Described, ABC):
     vectors: ClassVar[tuple[tuple[str, str], ...]] = ()
     """Pairs of fields (amplitude, phase [rad]) in which a search turns amplitude cos and amplitude sin: linear (in its
     first harmonic), and no phase where the amplitude is zero."""
+    additive: ClassVar[tuple[str, ...]] = ()
+    """Fields that add to what the first amplitude does whatever that is, as the zero of an error that a sine makes; where records begin at
+    an angle that is called zero, the amplitude shows little without them."""
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {}
     """Field -> values from which a search begins, one after the other.  A field without a typical range stays there."""
     periodic: ClassVar[Mapping[str, str]] = {}

@@ -41,6 +41,7 @@ class EncoderEccentricity(SensorEffect):
     family: ClassVar[str] = "encoder_eccentricity"
     signature: ClassVar[str] = "one angle off by a sine of itself at every speed, with no torque that belongs to it"
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("amplitude", "phase"), ("second_amplitude", "second_phase"))
+    additive: ClassVar[tuple[str, ...]] = ("offset",)
     starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"order": (1.0, 2.0)}
 
     @classmethod

@@ -46,6 +46,7 @@ class KinematicError(Effect):
     family: ClassVar[str] = "kinematic_error"
     signature: ClassVar[str] = "vibration and position error at a fixed order of a shaft, resonant where the order meets a mode"
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("amplitude", "phase"),)
+    additive: ClassVar[tuple[str, ...]] = ("offset",)
     starts: ClassVar[Mapping[str, tuple[float | str, ...]]] = {
         "order": (1.0, 2.0, 3.0, 4.0, 6.0),
         "follows": ("wave_generator", "flexspline"),

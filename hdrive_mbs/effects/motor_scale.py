@@ -19,7 +19,7 @@ class MotorScale(MotorEffect):
     with the torque M of the motor's characteristic.
 
     Source: torque in proportion to current, with a torque constant that is off.  Leaves out saturation, which lowers
-    the factor at high torque, and its change with temperature.
+    the factor at high torque (MotorSaturation), and its change with temperature.
     """
 
     error: float = parameter("1", "a, share of the torque that is delivered in excess", low=-0.9, high=2.0, typical=(-0.3, 0.3))

@@ -60,6 +60,7 @@ from hdrive_mbs.effects.lugre_friction import LuGreFriction
 from hdrive_mbs.effects.maxwell_slip_hysteresis import MaxwellSlipHysteresis
 from hdrive_mbs.effects.mesh_friction import MeshFriction
 from hdrive_mbs.effects.mesh_presliding_friction import MeshPreslidingFriction
+from hdrive_mbs.effects.motor_saturation import MotorSaturation
 from hdrive_mbs.effects.motor_scale import MotorScale
 from hdrive_mbs.effects.one_sided_stiffness import OneSidedStiffness
 from hdrive_mbs.effects.parallel_stiffness_variation import ParallelStiffnessVariation
@@ -248,6 +249,7 @@ EXAMPLES = {
         Example(ActuatorLag(time_constant=5e-3), "motor", ("time_constant",)),
         Example(SupplySag(sag=0.3, torque_limit=15.0), "motor", ("sag",)),
         Example(MotorScale(error=0.2), "motor", ("error",)),
+        Example(MotorSaturation(saturation=0.01), "motor", ("saturation",)),
         Example(HiddenMode(inertia=0.2, natural_frequency=150.0, damping_ratio=0.3), "load", ("inertia",)),
         Example(FlexibleInertia(share=0.3, natural_frequency=150.0, damping_ratio=0.3), "load", ("share",)),
         Example(SeriesCompliance(compliance=2e-5), "gear", ("compliance",)),

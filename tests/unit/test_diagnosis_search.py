@@ -29,7 +29,7 @@ from hdrive_mbs.diagnosis.located import Located, located
 from hdrive_mbs.diagnosis.normal_equations import STRETCH, normal_equations
 from hdrive_mbs.diagnosis.pairs import alone, contenders, moved
 from hdrive_mbs.diagnosis.result import Cause, Place
-from hdrive_mbs.diagnosis.screening import FAINTEST, Look, Screen
+from hdrive_mbs.diagnosis.screening import FAINTEST, Look, Screen, _leading, _promising
 from hdrive_mbs.diagnosis.search import ENOUGH, Depth, Search, _Work, fit_nominal, is_inexact, search
 from hdrive_mbs.diagnosis.second_cause import slight, wants_second
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -493,6 +493,37 @@ def test_of_many_starts_with_a_phase_those_that_promise_most_are_looked_at_whole
     assert all(look is None or own.cost <= look.cost for look in looks[1:])
     whole = sum(runs[1:])
     assert runs[0] < whole
+
+
+def test_what_adds_to_an_amplitude_counts_for_what_it_promises(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An error of the output in records that begin at zero: alone its amplitude would move their beginnings too."""
+    amplitude, phase = 3e-4, 1.9
+    put_in = hm.KinematicError(amplitude=amplitude, order=2.0, phase=phase, follows="flexspline", offset=-amplitude * np.sin(phase))
+    both = Simulator(BENCH.trials(records((put_in, "gear"))[0]), 2.5e-4, 4)
+    factors = factors_of(BENCH)
+    base = fit(both, Hypothesis(factors), np.zeros(len(factors)), steps=25)
+    screen, honest = screen_from(both, base), Screen._promise
+    start = Hypothesis(factors, (Added(hm.KinematicError(amplitude=1e-6, order=2.0, follows="flexspline"), "gear", "error"),))
+    orders = (1.0, 2.0, 3.0, 4.0)
+    starts = [Hypothesis(factors, (Added(start.added[0].effect.replacing(order=n), "gear", "error"),)) for n in orders]
+    first = len(factors)
+    assert _leading(start, first) == [first, first + 1]
+    assert _promising(start, first) == [first, first + 1, first + 2]
+    assert "error.offset" in start.unknowns[-1].values([0.0])
+    told: dict[float, float] = {}
+
+    def promise(self: Screen, group: Starts, k: int, along: Sequence[int]) -> float:
+        told[group.starts[k].added[-1].effect.order] = found = honest(self, group, k, along)
+        return found
+
+    monkeypatch.setattr(Screen, "_promise", promise)
+    screen.look(starts)
+    with_it = dict(told)
+    monkeypatch.setattr(hm.KinematicError, "additive", ())
+    screen.look(starts)
+    assert sorted(with_it) == sorted(told) == list(orders)
+    assert with_it[2.0] > 1.3 * told[2.0]
+    assert with_it[2.0] > 0.9 * max(with_it.values())
 
 
 def test_starts_that_promise_more_than_they_bring_hide_no_other_one(monkeypatch: pytest.MonkeyPatch) -> None:

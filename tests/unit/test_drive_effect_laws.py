@@ -462,6 +462,19 @@ def test_a_sagging_supply_lets_the_motor_creep_up_to_its_last_speed() -> None:
     assert law.delivered(0.0, 4.0, 1.0) == 1.0
 
 
+def test_a_saturated_motor_gives_a_share_less_that_grows_with_the_square_and_never_more_than_its_most() -> None:
+    response = hm.simulate(wheel(0.2, 4.0).with_effect(hm.MotorSaturation(saturation=0.02), at="wheel", name="it"), 0.5, solver=TIGHT)
+    most = 1.0 / np.sqrt(3.0 * 0.02)
+    np.testing.assert_allclose(response["wheel.torque"].values, 4.0)
+    np.testing.assert_allclose(response["wheel.speed"].values, most * np.tanh(4.0 / most) / 0.2 * response.times, atol=1e-8)
+    law = hm.MotorSaturation(saturation=0.02)
+    for torque in (0.1, -0.1, 0.3):
+        missing = 1.0 - law.delivered(0.0, 5.0, torque) / torque
+        assert missing == pytest.approx(0.02 * torque**2, rel=0.02 * torque**2 * 2.0)  # next term of the series: 6/5 of it
+    assert law.delivered(0.0, 5.0, 1e3) == pytest.approx(most)
+    assert hm.MotorSaturation(saturation=0.0).delivered(0.0, 5.0, 7.0) == 7.0
+
+
 def test_effects_of_a_motor_follow_one_another() -> None:
     scene = wheel(0.2, 4.0).with_effect(hm.MotorScale(error=0.5), at="wheel", name="first")
     scene = scene.with_effect(hm.SupplySag(sag=1e-12, torque_limit=5.0), at="wheel", name="second")
@@ -480,7 +493,15 @@ def test_a_ripple_in_proportion_follows_what_the_motor_delivers() -> None:
     np.testing.assert_allclose(response["ripple.torque"].values, 0.8 * np.sin(3.0 * response["wheel.angle"].values), atol=1e-12)
 
 
-@pytest.mark.parametrize("effect", [hm.ActuatorLag(time_constant=0.1), hm.SupplySag(sag=0.1, torque_limit=1.0), hm.MotorScale(error=0.1)])
+@pytest.mark.parametrize(
+    "effect",
+    [
+        hm.ActuatorLag(time_constant=0.1),
+        hm.SupplySag(sag=0.1, torque_limit=1.0),
+        hm.MotorScale(error=0.1),
+        hm.MotorSaturation(saturation=0.1),
+    ],
+)
 def test_effects_of_a_motor_refuse_a_load_and_a_prescribed_motion(effect: Effect) -> None:
     loaded = drive(motor=lambda speed: 1.0 + 0.0 * speed).replacing(load=hm.Load(inertia=0.5, torque=hm.ConstantTorque(value=1.0)))
     with pytest.raises(PlaceError, match=r"needs a motor with a torque law, but 'load' is none\. Motors: motor\."):

@@ -139,6 +139,7 @@ EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.ActuatorLag(time_constant=2e-3), "motor"),
     (hm.SupplySag(sag=0.01, torque_limit=9.0), "motor"),
     (hm.MotorScale(error=-0.1), "motor"),
+    (hm.MotorSaturation(saturation=0.02), "motor"),
     (hm.HiddenMode(inertia=0.1, natural_frequency=100.0), "load"),
     (hm.FlexibleInertia(share=0.2, natural_frequency=100.0), "load"),
     (hm.SeriesCompliance(compliance=1e-5), "output_shaft"),
