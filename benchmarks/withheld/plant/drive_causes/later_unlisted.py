@@ -1,4 +1,4 @@
-"""More causes that have no name, written when most laws of the package under test stood: none of them was made for these."""
+"""More causes that have no name, written when most laws of the package under test stood, so that none of those was made for these."""
 
 from __future__ import annotations
 
