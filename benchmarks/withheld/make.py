@@ -23,7 +23,7 @@ import numpy as np
 from benchmarks.withheld import sealing
 from benchmarks.withheld.bench import BENCHES, load
 from benchmarks.withheld.folder import write_case
-from benchmarks.withheld.mixture import NULLS, PAIRS, SHARES, UNLISTED, Site, mixture, singles
+from benchmarks.withheld.mixture import ONLY, SHARES, Site, mixture, singles
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -35,10 +35,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, required=True, help="new folder for the cases")
     parser.add_argument("--key", type=Path, help="archive for the truths; default: OUT.key.zip beside OUT")
     parser.add_argument("--open", action="store_true", help="truth.json in each case folder, nothing sealed")
-    parser.add_argument("--causes", help="names of causes, separated by commas: one of these in every case; for open sets")
-    parser.add_argument("--nulls", action="store_true", help="nothing planted in any case: for the rate of false alarms")
-    parser.add_argument("--pairs", action="store_true", help="two causes in every case: for the share of which both are found")
-    parser.add_argument("--unlisted", action="store_true", help="a cause without a name in every case: for the share answered unknown")
+    held = parser.add_mutually_exclusive_group()
+    held.add_argument("--causes", help="names of causes, separated by commas: one of these in every case; for open sets")
+    held.add_argument("--nulls", action="store_true", help="nothing planted in any case: for the rate of false alarms")
+    held.add_argument("--pairs", action="store_true", help="two causes in every case: for the share of which both are found")
+    held.add_argument("--unlisted", action="store_true", help="a cause without a name in every case: for the share answered unknown")
     parser.add_argument("--noise", choices=("stated", "coloured"), default="stated", help="coloured: part of the white noise has a memory")
     parser.add_argument("--jobs", type=int, default=1, help="processes (default 1)")
     options = parser.parse_args(arguments)
@@ -50,9 +51,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not options.open and key.exists():
         parser.error(f"{key} exists already; name a new --key, a key is never overwritten")
 
-    said = [f"--{name}" for name in ("causes", "nulls", "pairs", "unlisted") if getattr(options, name)]
-    if len(said) > 1:
-        parser.error(f"{' and '.join(said)}: each says what all cases hold; give one of them")
     if options.causes and not options.open:
         parser.error("--causes says what a set holds; it goes with --open")
     names = tuple(options.causes.split(",")) if options.causes else ()
@@ -61,7 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"--causes {','.join(unknown)}: the {options.bench} bench has {', '.join(known)}")
 
     seed = options.seed if options.seed is not None else secrets.randbits(63)
-    shares = NULLS if options.nulls else PAIRS if options.pairs else UNLISTED if options.unlisted else SHARES
+    shares = next((kind for name, kind in ONLY.items() if getattr(options, name)), SHARES)
     labels = make_set(options.bench, options.cases, seed, options.out, noise=options.noise, jobs=options.jobs, names=names, shares=shares)
     if options.open:
         for case, truth in labels.items():
@@ -73,9 +71,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "cases": options.cases,
         "seed": seed,
         "noise": options.noise,
-        "nulls": options.nulls,
-        "pairs": options.pairs,
-        "unlisted": options.unlisted,
+        **{name: getattr(options, name) for name in ONLY},
     }
     sealing.write_key(key, sealed, about)
     sealing.write_commitments(options.out, sealed)

@@ -10,12 +10,10 @@ from benchmarks.withheld.bench import Bench
 from benchmarks.withheld.case import KINDS, Cause
 
 SHARES = {"null": 0.15, "effect": 0.44, "parameter": 0.10, "sensor": 0.08, "unlisted": 0.12, "pair": 0.11}
-NULLS = {kind: float(kind == "null") for kind in KINDS}
-"""Nothing but nulls."""
-PAIRS = {kind: float(kind == "pair") for kind in KINDS}
-"""Nothing but pairs."""
-UNLISTED = {kind: float(kind == "unlisted") for kind in KINDS}
-"""Nothing but causes without a name."""
+ONLY = {
+    name: {kind: float(kind == held) for kind in KINDS} for name, held in (("nulls", "null"), ("pairs", "pair"), ("unlisted", "unlisted"))
+}
+"""Shares of sets that hold one kind alone: nothing, two causes, or a cause without a name in every case."""
 Site = tuple[str, str]  # name and place
 
 

@@ -24,8 +24,8 @@ class Processor:
     """What the machine code is written for.
 
     name, features : as LLVM calls them
-    lanes : doubles that are computed side by side; 4 also where a register takes 8, for twice as many take nearly twice as long
-        (benchmarks/lanes) and most groups are small
+    lanes : doubles that are computed side by side; 4 also where a register takes 8, for twice as many take 1.2 to 2.1 times as
+        long (benchmarks/lanes, on two processors) and most groups are small
     fused : whether it has fused multiply-add
     """
 

@@ -73,7 +73,7 @@ class Templates:
 
     def __init__(self, *, held: bool = False) -> None:
         self._held, self._most = held, KEPT_HELD if held else KEPT
-        self._kept: OrderedDict[Hashable, Template | None] = OrderedDict()
+        self._kept: OrderedDict[Hashable, Template] = OrderedDict()
         self._asked: OrderedDict[Hashable, int] = OrderedDict()
         self._never: set[Hashable] = set()
 
@@ -87,10 +87,10 @@ class Templates:
         found: list[CompiledLine | None] = [None] * len(points)
         values = [hypothesis.values(z, to_run=True) for z in points]
         free = _Free.of(hypothesis, held=self._held)
-        alike_: dict[tuple[float, ...], list[int]] = {}
+        groups: dict[tuple[float, ...], list[int]] = {}
         for k, item in enumerate(values):
-            alike_.setdefault(free.held(item), []).append(k)
-        for numbers in alike_.values():
+            groups.setdefault(free.held(item), []).append(k)
+        for numbers in groups.values():
             template = self.of(hypothesis, scene, points[numbers[0]], view, compiled, asked=len(numbers))
             if template is not None:
                 for k, line in zip(numbers, template.lines([values[k] for k in numbers]), strict=True):
@@ -109,23 +109,25 @@ class Templates:
         if law is None or law in self._never:
             return None
         key = law, free.held(hypothesis.values(point, to_run=True))
-        if key not in self._kept:
+        found = self._kept.get(key)
+        if found is None:
             if self._held and not self._is_worth_while(key, asked):
                 return None
-            self._kept[key] = _made(hypothesis, scene, point, compiled, free)
-            if self._kept[key] is None:
+            found = _made(hypothesis, scene, point, compiled, free)
+            if found is None:
                 self._never.add(law)
+                return None
+            self._kept[key] = found
             while len(self._kept) > self._most:
                 self._kept.popitem(last=False)
         self._kept.move_to_end(key)
-        found = self._kept[key]
-        if found is not None:
-            found.uses += 1
-            if found.uses > 1 and found.uses & (found.uses - 1) == 0:
-                beside = free.moved(hypothesis, point, 1.0)
-                if _agrees(found, hypothesis, scene, beside, compiled) is False:
-                    found = self._kept[key] = None
-                    self._never.add(law)
+        found.uses += 1
+        if found.uses > 1 and found.uses & (found.uses - 1) == 0:
+            beside = free.moved(hypothesis, point, 1.0)
+            if _agrees(found, hypothesis, scene, beside, compiled) is False:
+                del self._kept[key]
+                self._never.add(law)
+                return None
         return found
 
     def _is_worth_while(self, key: Hashable, asked: int) -> bool:
@@ -189,7 +191,8 @@ def _key(hypothesis: Hypothesis, scene: Scene, point: FloatArray, view: Hashable
 def _made(hypothesis: Hypothesis, scene: Scene, point: FloatArray, compiled: Compile, free: _Free) -> Template | None:
     """A template recorded beside a point and checked farther off.
 
-    First one that holds where a number becomes zero or one too, as angles do where a search begins.  Of a law that makes numbers which
+    First one that holds where a number becomes zero or one too, as angles do where a search begins; it multiplies by a zero what a built
+    line leaves out, which differs only where that is infinite.  Of a law that makes numbers which
     are one whatever comes in, a built line is shorter than such a template; then one that leaves out what a built line does.
     """
     here, elsewhere = free.moved(hypothesis, point, 1.0), free.moved(hypothesis, point, 2.7)

@@ -1,7 +1,7 @@
 """Lines run through trials; with half the step where they grow at the one that was chosen for the nominal model.
 
 Lines of different trials go side by side where these have the same times: most questions are of one line or two, and a run of as
-many as the processor has lanes takes as long as one of one.
+many as the processor has lanes takes little longer than one of one (benchmarks/lanes).
 """
 
 from __future__ import annotations

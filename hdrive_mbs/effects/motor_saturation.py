@@ -21,9 +21,9 @@ class MotorSaturation(MotorEffect):
     with the torque M of the motor's characteristic, which counts the current by the torque constant of a small one.  At small
     torques a share s M^2 of it is missing; more than M_s is never delivered.  s = 0 leaves M as it is.
 
-    Source: the flux linkage of an iron circuit over the current, odd and levelling off, written as a hyperbolic tangent, as in texts
-    on the modelling of saturated machines; the share at small torques from the series of tanh.  Leaves out field weakening, the
-    second axis of a salient rotor, hysteresis of the iron and heat.
+    Source: torque in proportion to the flux linkage of an iron circuit, which is odd in the current and levels off; the hyperbolic tangent
+    for it is our choice, s the first term of its series.  Where a motor works far beyond its knee the curve decides, and another one
+    may be due.  Leaves out field weakening, the second axis of a salient rotor, hysteresis of the iron and heat.
     """
 
     saturation: float = parameter(

@@ -61,7 +61,8 @@ def clean(moved: Motion, sensors: Sensors) -> dict[str, Array]:
     turns = np.floor((moved.states[:, LOAD] - sensors.lost_count_angle) / (2.0 * np.pi))
     load_angle = load_angle - sensors.lost_count * (turns - turns[0])
     torque = sensors.torque_gain * moved.output_torque * (1.0 + sensors.torque_cubic * moved.output_torque**2)
-    torque = torque + sensors.torque_loop * _loops(moved.output_torque, sensors.torque_loop_limit)
+    if sensors.torque_loop != 0.0:
+        torque = torque + sensors.torque_loop * _loops(moved.output_torque, sensors.torque_loop_limit)
     return {
         "motor_torque": moved.command,
         "motor_angle": sensors.motor_encoder.seen(moved.states[:, MOTOR]),
