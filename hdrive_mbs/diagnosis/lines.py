@@ -115,7 +115,9 @@ class Lines:
             if trial.settled and resting is None:
                 resting = _resting(lines, trial.angles)
             rest = resting if trial.settled and resting is not None else [{} for _ in lines]
-            found[k] = [None if line is None else Start(line, {**angles, **trial.angles}) for line, angles in zip(lines, rest, strict=True)]
+            if k not in skipped:
+                both = zip(lines, rest, strict=True)
+                found[k] = [None if line is None else Start(line, {**angles, **trial.angles}) for line, angles in both]
         return found
 
     def _built(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -33,6 +35,21 @@ def test_a_point_that_makes_a_disc_uneven_is_left_out_and_the_others_are_not() -
     points = [factor * hypothesis.start() for factor in (1.0, 0.8 * largest / WEIGHT, 1.2 * largest / WEIGHT)]
     [starts] = lines(jeffcott.build(eccentricity=0.0)).at(hypothesis, points)
     assert [start is not None for start in starts] == [True, True, False]
+
+
+def test_a_trial_that_is_skipped_has_no_line_even_where_the_others_start_as_it_rests() -> None:
+    """Else it would be run: a simulator runs whatever has a line."""
+    measured, still = {"probe": Measured(channel="disc.x", noise=1e-6)}, np.zeros(8)
+    scene = jeffcott.build(eccentricity=0.0)
+    run = Trial(name="run", scene=scene, every=1e-3, columns={"probe": still}, measured=measured, held_out=still > 0.0, settled=True)
+    points = [unbalanced().start()]
+    [[one], [other]] = Lines([run, replace(run, name="again")]).at(unbalanced(), points)
+    assert one is not None
+    [[skipped], [alone]] = Lines([run, replace(run, name="again")]).at(unbalanced(), points, frozenset({0}))
+    assert skipped is None
+    assert other is not None
+    assert alone is not None
+    assert alone.angles == other.angles == one.angles
 
 
 def test_a_scene_that_no_compiled_run_can_follow_is_refused_and_not_left_out() -> None:
