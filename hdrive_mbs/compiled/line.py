@@ -99,7 +99,7 @@ class CompiledLine:
 
 def run_many(
     lines: Sequence[CompiledLine],
-    samples: int,
+    samples: int | Sequence[int],
     every: float,
     *,
     step: float,
@@ -110,34 +110,42 @@ def run_many(
 ) -> list[CompiledRun | SimulationError]:
     """Run every line as ``CompiledLine.run`` does; lines of the same structure side by side in vector registers.
 
+    samples : of all lines, or the number for each of them: the shorter ones go along to the end of the longest beside them
     angles, speeds, states : at the start, for all lines, or one mapping for each of them
 
     Returns a run for each line, or the SimulationError of a line whose values stop being finite; the others go on.
     """
-    if not (every > 0.0 and step > 0.0 and samples >= 1):
-        raise ParameterError(f"samples = {samples}, every = {every:g} s, step = {step:g} s: must be greater than 0.")
+    counts = [samples] * len(lines) if isinstance(samples, int) else list(samples)
+    if not (every > 0.0 and step > 0.0 and min(counts, default=1) >= 1):
+        raise ParameterError(f"samples = {min(counts)}, every = {every:g} s, step = {step:g} s: must be greater than 0.")
+    if len(counts) != len(lines):
+        raise ParameterError(f"{len(counts)} numbers of samples for {len(lines)} lines; give one for all or one for each.")
     inner = max(1, math.ceil(every / step * (1.0 - 1e-9)))
     given = [_for_each(item, name, len(lines)) for item, name in ((angles, "angles"), (speeds, "speeds"), (states, "states"))]
     initial = [np.array(line.initial(*values), float) for line, *values in zip(lines, *given, strict=True)]
     groups: dict[Structure, list[int]] = {}
     for k, line in enumerate(lines):
         groups.setdefault(line.structure, []).append(k)
-    times = np.asarray(start + every * np.arange(samples), float)
+    for group in groups.values():
+        group.sort(key=lambda k: -counts[k])
+    times = np.asarray(start + every * np.arange(max(counts, default=0)), float)
     found: dict[int, CompiledRun | SimulationError] = {}
-    width = processor().lanes
-    parts = [group[first : first + width] for group in groups.values() for first in range(0, len(group), width)]
+    lanes, wide = processor().lanes, processor().wide
+    parts = [group[first : first + wide] for group in groups.values() for first in range(0, len(group), wide)]
     # one line alone takes as long in all lanes as in one, and needs no machine code of its own
-    prepared = [Lanes([lines[k].program for k in part], width) for part in parts]
+    prepared = [Lanes([lines[k].program for k in part], lanes if len(part) <= lanes else wide) for part in parts]
 
     def run(number: int) -> tuple[FloatArray, npt.NDArray[np.int64]]:
-        return run_lanes(prepared[number], np.array([initial[k] for k in parts[number]]), samples, every, inner, start)
+        part = parts[number]
+        return run_lanes(prepared[number], np.array([initial[k] for k in part]), counts[part[0]], every, inner, start)
 
     for part, (out, good) in zip(parts, side_by_side(run, range(len(parts))), strict=True):
         for lane, k in enumerate(part):
-            if good[lane] < samples:
+            if good[lane] < counts[k]:
                 found[k] = _not_finite(start + int(good[lane]) * every, every / inner)
             else:
-                found[k] = CompiledRun(times, {name: out[i, lane] for i, name in enumerate(lines[k].channels)})
+                values = {name: out[i, lane, : counts[k]] for i, name in enumerate(lines[k].channels)}
+                found[k] = CompiledRun(times[: counts[k]], values)
     return [found[k] for k in range(len(lines))]
 
 

@@ -9,17 +9,19 @@ from hdrive_mbs.compiled.structure import Step, Structure
 from hdrive_mbs.compiled.table_code import table_code
 from hdrive_mbs.compiled.vector_functions import BOTH, VECTORS, sine_and_cosine, vector_function
 
-_PLAIN = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv"}
+_PLAIN = {"add": "fadd contract", "sub": "fsub contract", "mul": "fmul contract", "div": "fdiv"}
+"""A product that is added once is rounded once, where the processor can (``contract``): a fifth of a run of the benches."""
 _COMPARE = {"lt": "olt", "le": "ole", "eq": "oeq"}
 _INTRINSIC = {"sqrt": "sqrt", "abs": "fabs", "floor": "floor", "ceil": "ceil"}
 _LIBRARY = ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "pow", "atan2")
 
 
 def functions(structure: Structure, width: int, *, shared: bool, fused: bool) -> list[str]:
-    """``rates`` and ``read``, what they call, and its declarations.
+    """``stage`` and ``read``, what they call, and its declarations.
 
-    ``void @rates(state*, row, constants*, tables*, columns*, out*)`` on ``width`` lanes, ``read`` alike; the lanes of a
-    number lie side by side.
+    ``void @read(state*, row, constants*, tables*, columns*, out*)`` on ``width`` lanes; the lanes of a number lie side by side.
+    ``void @stage(state*, row, constants*, tables*, columns*, base*, a, next*, from*, b, to*)`` works out the rates k at a state and
+    what a Runge-Kutta step makes of them, next = base + a k and to = from + b k; of what it reads only ``from`` may be written.
 
     shared : all lanes read the columns of the first one
     fused : the processor has fused multiply-add
@@ -32,13 +34,19 @@ def functions(structure: Structure, width: int, *, shared: bool, fused: bool) ->
     made += [sine_and_cosine(width, declared)] if {"sin", "cos"}.issubset(vectors) else []
     orders = sorted({step.data[1] for step in structure.steps if isinstance(step.data, tuple)})
     made += [table_code(order, declared) for order in orders]
-    for name, results in (("rates", structure.rates), ("read", structure.readings)):
-        made.append(_Function(structure, width, shared, vectors, declared).text(name, results))
+    for kind, results in ((_Stage, structure.rates), (_Read, structure.readings)):
+        made.append(kind(structure, width, shared, vectors, declared).text(results))
     return [*declared.values(), *made]
 
 
 class _Function:
-    """One function, written step by step."""
+    """One function, written step by step.
+
+    name, more : of the function and its parameters beside those of all
+    """
+
+    name: str
+    more: str
 
     def __init__(self, structure: Structure, width: int, shared: bool, vectors: Sequence[str], declared: dict[str, str]) -> None:
         self.structure, self.shared, self.vectors = structure, shared, vectors
@@ -48,8 +56,8 @@ class _Function:
         self.turned: dict[int, dict[str, str]] = {}
         """Of angles whose sine and cosine are both needed the function's results."""
 
-    def text(self, name: str, results: Sequence[int]) -> str:
-        """Both sides of a branch are computed."""
+    def text(self, results: Sequence[int]) -> str:
+        """Both sides of a branch are computed; what is done with a result is done at once, while it is in a register."""
         needed, left = set(), list(results)
         while left:
             k = left.pop()
@@ -57,12 +65,23 @@ class _Function:
                 needed.add(k)
                 left += self.structure.steps[k].arguments
         self.turned = self._angles_of_both(needed)
+        places: dict[int, list[int]] = {}
+        for place, result in enumerate(results):
+            places.setdefault(result, []).append(place)
+        self.begin()
         for k in sorted(needed):
             self._step(k, self.structure.steps[k])
-        for k, result in enumerate(results):
-            self.write.store(self._real(result), "%out", k)
-        parameters = "ptr noalias %y, i64 %row, ptr noalias %c, ptr noalias %tables, ptr noalias %columns, ptr noalias %out"
-        return "\n".join([f"define internal void @{name}({parameters}) {{", "entry:", *self.write.lines, "  ret void", "}"])
+            for place in places.get(k, []):
+                self.finish(place, self._real(k))
+        parameters = f"ptr noalias %y, i64 %row, ptr noalias %c, ptr noalias %tables, ptr noalias %columns, {self.more}"
+        return "\n".join([f"define internal void @{self.name}({parameters}) {{", "entry:", *self.write.lines, "  ret void", "}"])
+
+    def begin(self) -> None:
+        """Write what comes before all else."""
+
+    def finish(self, place: int, value: str) -> None:
+        """Write what is done with a result."""
+        raise NotImplementedError
 
     def _angles_of_both(self, needed: set[int]) -> dict[int, dict[str, str]]:
         """Angles of which both sine and cosine are needed, where there is a function of both."""
@@ -188,3 +207,23 @@ class _Function:
         for factor in factors[1:]:
             product = write.mul(product, factor)
         return write.div(write.number(1.0), product) if exponent < 0.0 else product
+
+
+class _Read(_Function):
+    name, more = "read", "ptr noalias %out"
+
+    def finish(self, place: int, value: str) -> None:
+        self.write.store(value, "%out", place)
+
+
+class _Stage(_Function):
+    name, more = "stage", "ptr noalias %base, double %a, ptr noalias %next, ptr %from, double %b, ptr %to"
+
+    def begin(self) -> None:
+        a, b = self.write.everywhere("%a"), self.write.everywhere("%b")
+        self._moves = ("%base", a, "%next"), ("%from", b, "%to")
+
+    def finish(self, place: int, value: str) -> None:
+        write = self.write
+        for base, size, target in self._moves:
+            write.store(write.product_added(size, value, write.load(write.real, base, place)), target, place)

@@ -72,7 +72,7 @@ class Text:
         return self.new(f"select {self.truth} {test}, {self.real} {a}, {self.real} {b}")
 
     def intrinsic(self, name: str, *arguments: str) -> str:
-        """An operation of LLVM on each lane: sqrt, fabs, floor, ceil, fma, copysign."""
+        """An operation of LLVM on each lane: sqrt, fabs, floor, ceil, fma, fmuladd, copysign."""
         whole = f"llvm.{name}.{'f64' if self.width == 1 else f'v{self.width}f64'}"
         self.declared[whole] = f"declare {self.real} @{whole}({', '.join([self.real] * len(arguments))})"
         return self.new(f"call {self.real} @{whole}({', '.join(f'{self.real} {item}' for item in arguments)})")
@@ -80,6 +80,10 @@ class Text:
     def fma(self, a: str, b: str, c: str) -> str:
         """a b + c with one rounding."""
         return self.intrinsic("fma", a, b, c)
+
+    def product_added(self, a: str, b: str, c: str) -> str:
+        """a b + c, with one rounding where that is faster."""
+        return self.intrinsic("fmuladd", a, b, c)
 
     def polynomial(self, x: str, coefficients: tuple[float, ...]) -> str:
         """sum_k c[k] x^k by Estrin's scheme: pairs c[k] + c[k+1] x, then pairs of these with x^2, and so on.

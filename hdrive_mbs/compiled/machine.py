@@ -24,14 +24,15 @@ class Processor:
     """What the machine code is written for.
 
     name, features : as LLVM calls them
-    lanes : doubles that are computed side by side; 4 also where a register takes 8, for twice as many take 1.2 to 2.1 times as
-        long (benchmarks/lanes, on two processors) and most groups are small
+    lanes : doubles that are computed side by side; 4 also where a register takes 8, for most groups are small
+    wide : of larger groups; twice as many take 1.2 to 1.6 times as long where a register takes them (benchmarks/lanes)
     fused : whether it has fused multiply-add
     """
 
     name: str
     features: str
     lanes: int
+    wide: int
     fused: bool
 
 
@@ -51,7 +52,8 @@ def processor() -> Processor:
     features = llvm.get_host_cpu_features()
     arm = llvm.get_default_triple().startswith(("aarch64", "arm64"))
     lanes = 4 if features.get("avx2") else 2
-    return Processor(llvm.get_host_cpu_name(), features.flatten(), lanes, bool(arm or features.get("fma")))
+    wide = 8 if features.get("avx512f") and features.get("avx512vl") else lanes
+    return Processor(llvm.get_host_cpu_name(), features.flatten(), lanes, wide, bool(arm or features.get("fma")))
 
 
 @lru_cache(maxsize=1024)

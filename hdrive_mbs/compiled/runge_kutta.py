@@ -18,19 +18,8 @@ def loop(states: int, readings: int, width: int) -> list[str]:
     """
     declared: dict[str, str] = {}
     parts = {"n": states, "m": readings * width, "real": typed("double", width), "columns_m": max(1, readings)}
-    made = [_RUN.format(**parts), _move(states, width, declared), _finite(states, width, declared)]
+    made = [_RUN.format(**parts), _finite(states, width, declared)]
     return [*declared.values(), *made]
-
-
-def _move(states: int, width: int, declared: dict[str, str]) -> str:
-    """to = y + h k."""
-    text = Text(width, declared)
-    step = text.everywhere("%h")
-    for k in range(states):
-        way = text.mul(step, text.load(text.real, "%k", k))
-        text.store(text.add(text.load(text.real, "%y", k), way), "%to", k)
-    head = "define internal void @move(ptr %to, ptr %y, double %h, ptr noalias %k) {"
-    return "\n".join([head, "entry:", *text.lines, "  ret void", "}"])
 
 
 def _finite(states: int, width: int, declared: dict[str, str]) -> str:
@@ -53,11 +42,9 @@ define void @run(
   ptr noalias %c, ptr noalias %tables, ptr noalias %columns, ptr noalias %good, ptr noalias %out, i64 %rows
 ) {{
 entry:
-  %k1 = alloca [{n} x {real}], align 64
-  %k2 = alloca [{n} x {real}], align 64
-  %k3 = alloca [{n} x {real}], align 64
-  %k4 = alloca [{n} x {real}], align 64
-  %stage = alloca [{n} x {real}], align 64
+  %sum = alloca [{n} x {real}], align 64
+  %odd = alloca [{n} x {real}], align 64
+  %even = alloca [{n} x {real}], align 64
   %line = alloca [{columns_m} x {real}], align 64
   %half = fmul double %h, 0.5
   %sixth = fdiv double %h, 6.0
@@ -97,17 +84,10 @@ step:
   %r0 = add i64 %row, %passed
   %r1 = add i64 %r0, 1
   %r2 = add i64 %r0, 2
-  call void @rates(ptr %y, i64 %r0, ptr %c, ptr %tables, ptr %columns, ptr %k1)
-  call void @move(ptr %stage, ptr %y, double %half, ptr %k1)
-  call void @rates(ptr %stage, i64 %r1, ptr %c, ptr %tables, ptr %columns, ptr %k2)
-  call void @move(ptr %stage, ptr %y, double %half, ptr %k2)
-  call void @rates(ptr %stage, i64 %r1, ptr %c, ptr %tables, ptr %columns, ptr %k3)
-  call void @move(ptr %stage, ptr %y, double %h, ptr %k3)
-  call void @rates(ptr %stage, i64 %r2, ptr %c, ptr %tables, ptr %columns, ptr %k4)
-  call void @move(ptr %y, ptr %y, double %sixth, ptr %k1)
-  call void @move(ptr %y, ptr %y, double %third, ptr %k2)
-  call void @move(ptr %y, ptr %y, double %third, ptr %k3)
-  call void @move(ptr %y, ptr %y, double %sixth, ptr %k4)
+  call void @stage(ptr %y, i64 %r0, ptr %c, ptr %tables, ptr %columns, ptr %y, double %half, ptr %odd, ptr %y, double %sixth, ptr %sum)
+  call void @stage(ptr %odd, i64 %r1, ptr %c, ptr %tables, ptr %columns, ptr %y, double %half, ptr %even, ptr %sum, double %third, ptr %sum)
+  call void @stage(ptr %even, i64 %r1, ptr %c, ptr %tables, ptr %columns, ptr %y, double %h, ptr %odd, ptr %sum, double %third, ptr %sum)
+  call void @stage(ptr %odd, i64 %r2, ptr %c, ptr %tables, ptr %columns, ptr %sum, double %h, ptr %even, ptr %sum, double %sixth, ptr %y)
   %i2 = add i64 %i, 1
   %done = icmp eq i64 %i2, %inner
   br i1 %done, label %stepped, label %step

@@ -1,6 +1,6 @@
 """Lines run through trials; with half the step where they grow at the one that was chosen for the nominal model.
 
-Lines of different trials go side by side where these have the same times: most questions are of one line or two, and a run of as
+Lines of different trials go side by side where these are sampled as often: most questions are of one line or two, and a run of as
 many as the processor has lanes takes little longer than one of one (benchmarks/lanes).
 """
 
@@ -43,23 +43,28 @@ def run_trials(
     step : longest one of the integration [s];  parts : in which it is divided
     again : whether what grows is run again with half of it: what stiffens a line may need that
     """
-    times: dict[tuple[int, float], list[int]] = {}
+    sampled: dict[float, list[int]] = {}
     for number, item in enumerate(asked):
-        fold = fold_of(item.trial)
-        times.setdefault((fold * item.trial.samples, item.trial.every / fold), []).append(number)
-    for (samples, every), numbers in times.items():
+        sampled.setdefault(item.trial.every / fold_of(item.trial), []).append(number)
+    for every, numbers in sampled.items():
         inner = math.ceil(every / step * (1.0 - 1e-9))
+        numbers.sort(key=lambda k: -_samples(asked[k].trial))  # those that go to the same end together
         for first in range(0, len(numbers), AT_ONCE):
             some = numbers[first : first + AT_ONCE]
-            found = dict(zip(some, _side_by_side([asked[k] for k in some], samples, every, inner * parts), strict=True))
+            found = dict(zip(some, _side_by_side([asked[k] for k in some], every, inner * parts), strict=True))
             if wild := [k for k, item in found.items() if again and _grows(item, asked[k].trial)]:
-                found.update(zip(wild, _side_by_side([asked[k] for k in wild], samples, every, 2 * inner * parts), strict=True))
+                found.update(zip(wild, _side_by_side([asked[k] for k in wild], every, 2 * inner * parts), strict=True))
             yield from found.items()
 
 
-def _side_by_side(asked: Sequence[Through], samples: int, every: float, inner: int) -> list[CompiledRun | SimulationError]:
+def _side_by_side(asked: Sequence[Through], every: float, inner: int) -> list[CompiledRun | SimulationError]:
+    samples = [_samples(item.trial) for item in asked]
     angles, speeds = [item.angles for item in asked], [item.trial.speeds for item in asked]
     return run_many([item.line for item in asked], samples, every, step=every / inner, angles=angles, speeds=speeds)
+
+
+def _samples(trial: Trial) -> int:
+    return fold_of(trial) * trial.samples
 
 
 def run_trial(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import threading
+from typing import Any
 
 import numpy as np
 import pytest
@@ -223,7 +224,7 @@ def finished(found: CompiledRun | SimulationError) -> CompiledRun:
     return found
 
 
-@pytest.mark.parametrize("count", [1, 3, processor().lanes, processor().lanes + 1])
+@pytest.mark.parametrize("count", [1, 3, processor().lanes, processor().lanes + 1, processor().wide + 1])
 def test_lines_side_by_side_come_out_as_each_line_alone(count: int) -> None:
     lines = [CompiledLine(scene.network(), CHANNELS) for scene in trains(count)]
     assert len({line.structure for line in lines}) == 1
@@ -365,6 +366,65 @@ def test_initial_values_are_given_for_all_lines_or_for_each() -> None:
 
 def test_no_lines_make_no_runs() -> None:
     assert run_many([], 2, 1e-4, step=1e-5) == []
+    assert run_many([], [], 1e-4, step=1e-5) == []
+
+
+def test_lines_of_several_lengths_go_side_by_side_the_longest_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    wide = processor().wide
+    counts = [(11, 31, 21)[k % 3] for k in range(wide + 2)]
+    lines = [CompiledLine(scene.network(), CHANNELS) for scene in trains(len(counts))]
+    went: list[int] = []
+
+    def counted(lanes: Lanes, initial: np.ndarray, samples: int, *more: Any) -> Any:
+        went.append(samples)
+        return run_lanes(lanes, initial, samples, *more)
+
+    monkeypatch.setattr(compiled_line, "run_lanes", counted)
+    together = run_many(lines, counts, 1e-3, step=2e-5)
+    longest = sorted(counts, reverse=True)
+    assert went == [longest[0], longest[wide]]
+    for line, count, found in zip(lines, counts, together, strict=True):
+        alone = line.run(count, 1e-3, step=2e-5)
+        np.testing.assert_array_equal(finished(found).times, alone.times)
+        for name in CHANNELS:
+            np.testing.assert_array_equal(finished(found).values[name], alone.values[name], err_msg=name)
+
+
+def test_what_grows_after_the_end_of_a_shorter_line_is_none_of_it() -> None:
+    stiff = CompiledLine(build().replacing({"output_shaft.stiffness": 5e9}).network(), CHANNELS)
+    nominal = CompiledLine(build().network(), CHANNELS)
+    short, long, other = run_many([stiff, stiff, nominal], [1, 21, 21], 1e-3, step=2e-5)
+    assert len(finished(short).times) == 1
+    assert isinstance(long, SimulationError)
+    assert len(finished(other).times) == 21
+
+
+@pytest.mark.parametrize(
+    ("samples", "message"), [([2], "1 numbers of samples for 2 lines"), ([2, 0], "samples = 0, every"), (0, "samples = 0, every")]
+)
+def test_numbers_of_samples_that_do_not_fit_are_refused(samples: int | list[int], message: str) -> None:
+    line = CompiledLine(build().network(), CHANNELS)
+    with pytest.raises(hm.ParameterError, match=message):
+        run_many([line, line], samples, 1e-4, step=1e-5)
+
+
+def test_wide_lanes_serve_only_groups_that_narrow_ones_do_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Twice as many lanes take longer: a few lines do without them, and need no machine code for them."""
+    monkeypatch.setattr(compiled_line, "processor", lambda: dataclasses.replace(processor(), lanes=2, wide=4))
+    went: list[int] = []
+
+    def counted(lanes: Lanes, *more: Any) -> Any:
+        went.append(lanes.width)
+        return run_lanes(lanes, *more)
+
+    monkeypatch.setattr(compiled_line, "run_lanes", counted)
+    for count, widths in ((1, [2]), (2, [2]), (3, [4]), (5, [4, 2]), (7, [4, 4])):
+        went.clear()
+        lines = [CompiledLine(scene.network(), CHANNELS) for scene in trains(count)]
+        together = run_many(lines, 11, 1e-3, step=2e-5)
+        assert went == widths
+        for line, found in zip(lines, together, strict=True):
+            np.testing.assert_array_equal(finished(found).values["load.speed"], line.run(11, 1e-3, step=2e-5).values["load.speed"])
 
 
 @pytest.mark.parametrize("name", ["sin", "cos", "exp", "tanh", "log"])
@@ -401,7 +461,7 @@ def test_other_processors_compute_the_same(width: int, fused: bool, monkeypatch:
     scene = with_effects().replacing({"bouc_wen_hysteresis.exponent": 1.7})
     line = CompiledLine(scene.network(), CHANNELS)
     wanted = line.run(51, 2e-3, step=1e-5)
-    other = dataclasses.replace(processor(), lanes=width, fused=fused)
+    other = dataclasses.replace(processor(), lanes=width, wide=width, fused=fused)
     for module in (compiled_line, compiled_machine):
         monkeypatch.setattr(module, "processor", lambda: other)
     machine.cache_clear()

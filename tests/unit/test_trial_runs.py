@@ -1,15 +1,15 @@
-"""Lines through several trials at once: as if each had been run alone, in as few runs as their times allow."""
+"""Lines through several trials at once: as if each had been run alone, in as few runs as their sampling allows."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from hdrive_mbs.compiled.line import CompiledRun, run_many
-from hdrive_mbs.compiled.machine import processor
 from hdrive_mbs.diagnosis import trial_runs
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
@@ -62,27 +62,32 @@ def test_lines_of_several_trials_are_run_as_if_each_were_alone(asked: list[Throu
     assert any(np.abs(first[name] - third[name]).max() > 0.0 for name in first)
 
 
-def test_trials_of_equal_times_share_a_run(asked: list[Through], monkeypatch: pytest.MonkeyPatch) -> None:
-    together: list[int] = []
+def test_trials_that_are_sampled_as_often_share_a_run_the_longest_first(asked: list[Through], monkeypatch: pytest.MonkeyPatch) -> None:
+    together: list[list[int]] = []
 
-    def counted(lines: Any, *arguments: Any, **keywords: Any) -> Any:
-        together.append(len(lines))
-        return run_many(lines, *arguments, **keywords)
+    def counted(lines: Any, samples: Any, *arguments: Any, **keywords: Any) -> Any:
+        together.append(samples)
+        return run_many(lines, samples, *arguments, **keywords)
 
+    long, short = (fold_of(asked[k].trial) * asked[k].trial.samples for k in (0, 1))
+    assert short < long
     monkeypatch.setattr(trial_runs, "run_many", counted)
     list(run_trials(asked, STEP))
-    assert sorted(together) == [1, 3]
-    assert processor().lanes in (2, 4)
+    assert together == [[long, long, long, short]]
     monkeypatch.setattr(trial_runs, "AT_ONCE", 2)
     together.clear()
     list(run_trials(asked, STEP))
-    assert sorted(together) == [1, 1, 2]
+    assert together == [[long, long], [long, short]]
+    seldom = [Through(replace(asked[0].trial, every=2.0 * asked[0].trial.every), asked[0].line, asked[0].angles), asked[1]]
+    together.clear()
+    list(run_trials(seldom, STEP))
+    assert together == [[long], [short]]
 
 
 def test_what_grows_is_run_again_alone_with_half_the_step(asked: list[Through], monkeypatch: pytest.MonkeyPatch) -> None:
     steps: list[tuple[int, float]] = []
 
-    def counted(lines: Any, samples: int, every: float, *, step: float, **keywords: Any) -> Any:
+    def counted(lines: Any, samples: list[int], every: float, *, step: float, **keywords: Any) -> Any:
         steps.append((len(lines), round(every / step)))
         found = run_many(lines, samples, every, step=step, **keywords)
         return [SimulationError("grown"), *found[1:]] if len(steps) == 1 else found
