@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from hdrive_mbs.diagnosis.bench import Bench
-from hdrive_mbs.diagnosis.experiment.choose import next_records
+from hdrive_mbs.diagnosis.experiment.choose import Report, next_records
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.gather import Evidence
 from hdrive_mbs.diagnosis.result import Separation
 from hdrive_mbs.diagnosis.suspects import Label
+from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.verdict import Claim
 from hdrive_mbs.errors import HdriveError
 from hdrive_mbs.records.record import Record
@@ -33,20 +34,34 @@ def alternatives(evidence: Evidence, claim: Claim) -> dict[Label, Fitted]:
 
 
 def fits_of(evidence: Evidence, claim: Claim) -> dict[Label, Fitted]:
-    """Those, and the best other causes on all samples, most probable first; without residuals, which are long."""
+    """Those, and the best other causes on all samples, most probable first; without residuals."""
     found = alternatives(evidence, claim)
     for item in evidence.singles:
         found.setdefault(item.suspect.label, item.fitted)
-    return {label: replace(fitted, residuals=np.empty(0)) for label, fitted in found.items()}
+    return _short(found)
 
 
-def records_to_take(bench: Bench, records: Sequence[Record], evidence: Evidence, claim: Claim, notes: list[str]) -> tuple[Separation, ...]:
-    """Records that would separate what these cannot tell apart; a note where none can be planned."""
-    tied = alternatives(evidence, claim)
+@dataclass(frozen=True)
+class Planned:
+    """Records that would separate what cannot be told apart, best first;  notes : why none could be planned."""
+
+    records: tuple[Separation, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def records_to_take(
+    bench: Bench, records: Sequence[Record], evidence: Evidence, claim: Claim, team: Team, report: Report | None
+) -> Planned:
+    """Of what a claim leaves tied."""
+    tied = alternatives(evidence, claim) if claim.tied else {}
     if len(tied) < 2:
-        return ()
+        return Planned()
     try:
-        return next_records(bench, tied, records=records, step=evidence.fine.step)
+        return Planned(next_records(bench, _short(tied), records=records, step=evidence.fine.step, report=report, team=team))
     except HdriveError as error:
-        notes.append(f"No next record was planned: {error}")
-        return ()
+        return Planned(notes=(f"No next record was planned: {error}",))
+
+
+def _short(fits: Mapping[Label, Fitted]) -> dict[Label, Fitted]:
+    """Without residuals, which are long."""
+    return {label: replace(fitted, residuals=np.empty(0)) for label, fitted in fits.items()}

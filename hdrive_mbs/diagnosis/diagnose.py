@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.compiled.threads import allowed
-from hdrive_mbs.diagnosis.alternatives import fits_of, records_to_take
+from hdrive_mbs.diagnosis.alternatives import Planned, fits_of, records_to_take
 from hdrive_mbs.diagnosis.assumed_bench import assumed_bench
 from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.diagnosis.candidate_checks import check_candidates, left_out
@@ -127,10 +127,11 @@ def diagnose(
         evidence = gather(coarse, fine, factors, known.groups, tried, team, report)
         claim, best = _concluded(evidence)
         checked = _on_the_engine(team, evidence, best, report)
+        planned = records_to_take(known, chosen, evidence, claim, team, report)
     if watch is not None:
         watch(evidence)
     with allowed(lambda: workers or 1):  # its processes have ended
-        found = answer(known, chosen, evidence, claim, best, checked, started=started, pictures=pictures)
+        found = answer(known, chosen, evidence, claim, best, checked, planned, started=started, pictures=pictures)
     notes = (
         *left_out(tried, evidence.single, step),
         *ringing_words(trials),
@@ -207,6 +208,7 @@ def answer(
     claim: Claim,
     best: Fitted,
     checked: Sequence[Verified],
+    planned: Planned,
     *,
     started: float,
     pictures: bool,
@@ -214,16 +216,15 @@ def answer(
     """The answer that the fits of a case give.
 
     claim, best : what they say and the fit that stands for it;  checked : what the engine says of it
+    planned : records to take next
     """
     improved = best.hypothesis.scene(bench.scene, best.z)
-    notes: list[str] = []
+    notes = [*planned.notes]
     claimed = () if claim.kind in ("none", "unknown") or claim.fit is None else _causes(claim.fit, claim, improved, bench.groups)
     claimed = strongest_first(claimed, evidence.singles)
     if evidence.place.doubt:
         notes.append(f"Place of the gap: {evidence.place.doubt}")
     extras = pictures_of(evidence, best, [cause.at for cause in claimed]) if pictures else {}
-    if claim.tied:
-        extras["next_records"] = records_to_take(bench, records, evidence, claim, notes)
     notes += [item.text for item in checked if not item.differs]
     is_nominal = not best.hypothesis.added and not best.hypothesis.loose
     told = "the refitted nominal model" if is_nominal else best.hypothesis.label
@@ -243,6 +244,7 @@ def answer(
         notes=tuple(notes),
         warnings=tuple(item.text for item in checked if item.differs),
         fits=fits_of(evidence, claim),
+        next_records=planned.records,
         driven=driven_scenes(evidence.fine, best, [record.name for record in records]),
         seconds=time.monotonic() - started,
         versions=_versions(),

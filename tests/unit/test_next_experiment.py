@@ -25,6 +25,7 @@ from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Added, FloatArray, Hypothesis
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import ParameterError
@@ -141,6 +142,17 @@ def test_next_records_puts_the_load_step_before_the_run_up() -> None:
     assert [item.record for item in found] == ["load step", "run-up"]
     assert found[0].detectability > DISTINGUISHABLE > found[1].detectability
     assert {found[0].first, found[0].second} == {COMPLIANCE, FRICTION}
+
+
+def test_processes_that_share_the_plans_come_to_the_same() -> None:
+    coupling, friction = after_run_up()
+    fits, plans, said = {COMPLIANCE: coupling, FRICTION: friction}, [RUN_UP, LOAD_STEP], []
+    alone = next_records(bench(), fits, plans)
+    with Team(2) as team:
+        shared = next_records(bench(), fits, plans, team=team, report=lambda *words: said.append(words))
+    assert [(item.record, item.first, item.second) for item in shared] == [(item.record, item.first, item.second) for item in alone]
+    np.testing.assert_allclose([item.detectability for item in shared], [item.detectability for item in alone], rtol=1e-9)
+    assert said == [("planning the next record", k, 2) for k in range(3)]
 
 
 @pytest.mark.parametrize("alone", [True, False], ids=["by itself", "together with the run-up"])

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
 
 from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.diagnosis.experiment.detectability import ENOUGH, Predictions
@@ -12,11 +14,31 @@ from hdrive_mbs.diagnosis.experiment.menu import standard_menu
 from hdrive_mbs.diagnosis.experiment.plan import Plan
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.result import Separation
+from hdrive_mbs.diagnosis.team import Team
+from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.errors import AnalysisError, ParameterError
 from hdrive_mbs.records.record import Record
 
 Label = tuple[str, str]
 Report = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """What all plans are asked about, see ``next_records``."""
+
+    fits: Mapping[Label, Fitted]
+    step: float | None
+    every: int
+    alone: bool
+
+
+@dataclass(frozen=True, eq=False)
+class _Planned:
+    """A plan and its trials on the bench."""
+
+    plan: Plan
+    trials: Sequence[Trial]
 
 
 def next_records(
@@ -30,6 +52,7 @@ def next_records(
     every: int = 1,
     alone: bool = False,
     report: Report | None = None,
+    team: Team | None = None,
 ) -> tuple[Separation, ...]:
     """How well each plan of a menu would tell the fitted causes apart, best first.
 
@@ -39,6 +62,7 @@ def next_records(
     records : seen so far;  limits : those that these have kept, if not given
     step : of the integration [s]; half a sample if not given;  every : compare only each such sample
     alone : whether a planned record speaks alone, and not together with the records of the fits
+    report : called with (stage, done, total);  team : whose processes share the plans, this one alone if not given
 
     A plan counts by its worst pair, which is the one that is named.  Plans that no fit can be run through are left out;
     raises AnalysisError where that leaves none, ParameterError for fewer than two fits or a menu that cannot be made up.
@@ -50,17 +74,12 @@ def next_records(
     plans = _usual(bench, records, limits, step) if own is None else tuple(own)
     if not plans:
         raise ParameterError("The menu is empty: give a plan, or None for the standard ones.")
-    found: list[Separation] = []
-    failures: list[str] = []
-    for k, plan in enumerate(plans):
-        if report is not None:
-            report("planning the next record", k, len(plans))
-        try:
-            found.append(separation(bench, fits, plan, step=step, every=every, alone=alone))
-        except AnalysisError as error:
-            failures.append(str(error))
+    said = partial(report or (lambda stage, done, total: None), "planning the next record")
+    asked, items = _Asked(fits, step, every, alone), [_Planned(plan, bench.planned(plan)) for plan in plans]
+    answers = (team or Team(1)).map(_separated, asked, items, said)
+    found = [item for item in answers if isinstance(item, Separation)]
     if not found:
-        raise AnalysisError(f"No plan of the menu can be simulated: {failures[0]}")
+        raise AnalysisError(f"No plan of the menu can be simulated: {answers[0]}")
     return tuple(sorted(found, key=lambda item: -item.detectability))
 
 
@@ -71,14 +90,26 @@ def separation(
 
     Raises AnalysisError where a fit cannot be simulated through it.
     """
-    labels = tuple(fits)
-    predictions = Predictions(bench.planned(plan), tuple(fits.values()), step=step or 0.5 * plan.every, every=every)
+    return _separation(_Asked(fits, step, every, alone), _Planned(plan, bench.planned(plan)))
+
+
+def _separated(asked: _Asked, item: _Planned) -> Separation | str:
+    """Likewise; in words why not where a fit cannot be simulated."""
+    try:
+        return _separation(asked, item)
+    except AnalysisError as error:
+        return str(error)
+
+
+def _separation(asked: _Asked, item: _Planned) -> Separation:
+    labels, step = tuple(asked.fits), asked.step or 0.5 * item.plan.every
+    predictions = Predictions(item.trials, tuple(asked.fits.values()), step=step, every=asked.every)
     least, first, second = math.inf, 0, 1
     for i, j in predictions.nearest_first():
-        least, first, second = min((least, first, second), (predictions.apart(i, j, alone=alone), i, j))
+        least, first, second = min((least, first, second), (predictions.apart(i, j, alone=asked.alone), i, j))
         if least < ENOUGH:
             break
-    return Separation(record=plan.name, first=labels[first], second=labels[second], detectability=least)
+    return Separation(record=item.plan.name, first=labels[first], second=labels[second], detectability=least)
 
 
 def _usual(bench: Bench, records: Sequence[Record], limits: Limits | None, step: float | None) -> tuple[Plan, ...]:

@@ -142,10 +142,9 @@ def least_squares(difference: FloatArray, columns: FloatArray, held: FloatArray,
     scale = 1.0 / np.where(scale > 0.0, scale, 1.0)
     values, vectors = np.linalg.eigh(held * np.outer(scale, scale))
     root = vectors.T * np.sqrt(np.maximum(values, 0.0))[:, None]
-    turned, small = np.linalg.qr(columns * scale)
-    part = turned.T @ difference
-    outside = difference - turned @ part  # what no c reaches
-    system, wanted = np.vstack((small, root)), -np.concatenate((part, np.zeros(size)))
+    triangle = np.asarray(np.linalg.qr(np.column_stack((columns * scale, difference)), mode="r"))
+    part, outside = triangle[:size, size], triangle[size:, size]  # of the difference, and what no c reaches
+    system, wanted = np.vstack((triangle[:size, :size], root)), -np.concatenate((part, np.zeros(size)))
     moved = lsq_linear(system, wanted, bounds=(bounds[0] / scale, bounds[1] / scale), method="bvls").x
     left = system @ moved - wanted
     return scale * moved, float(outside @ outside + left @ left)
