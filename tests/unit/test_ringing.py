@@ -204,14 +204,21 @@ def test_pictures_show_the_model_with_it(record: hm.Record) -> None:
 
 
 def test_the_engine_is_compared_without_the_error_of_its_own_step(record: hm.Record, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of second order, on a line that whirls on for 100 rad, with a step of half of that of the search, which is of fourth order."""
+    """Of second order, on a line that whirls on for 100 rad, with a step of half of that of the search, which is of fourth order.
+
+    By a rule of fourth order itself, and where that is not stable by extrapolation.
+    """
     sharp = {name: hm.Measured(channel=name, noise=2e-9) for name in ("disc.x", "disc.y")}
     simulator = Simulator(dataclasses.replace(bench(line(), 0.2), measured=sharp).trials(record.between(0.0, 0.2)), STEP)
     fitted = fit(simulator, Hypothesis(factors=()), np.zeros(0), steps=0)
     monkeypatch.setattr("hdrive_mbs.diagnosis.verify.FINER", (2.0, 4.0))
+    explicit = engine_difference(simulator, fitted)
+    monkeypatch.setattr("hdrive_mbs.diagnosis.verify.EXPLICIT", 1e-3)
     sharpened = engine_difference(simulator, fitted)
     monkeypatch.setattr("hdrive_mbs.diagnosis.verify.AGREES", math.inf)
     plain = engine_difference(simulator, fitted)
     assert plain > 0.3
     # what the extrapolation leaves is of fourth order: some (w h)^2 of it, 2e-5 at 240 rad/s, and what the search errs
     assert sharpened < 0.01 * plain
+    assert explicit < 0.01 * plain
+    assert explicit != sharpened
