@@ -8,10 +8,11 @@ from typing import Any
 
 def report(numbers: Mapping[str, Any]) -> str:
     """Time of a run against that in one lane, and what it costs for each lane."""
+    narrow, wide = numbers["lanes_used"]
     lines = [
         "# Lanes of compiled runs",
         "",
-        f"{numbers['about']['processor']}; {numbers['lanes_used']} lanes are used on it. CPU seconds, least of {numbers['repeats']}.",
+        f"{numbers['about']['processor']}; {narrow} lanes, and {wide} for more lines. CPU seconds, least of {numbers['repeats']}.",
         "Shares are of one lane's time: of the whole run, and of it for each lane.",
         "",
         "| model | lanes | machine code [s] | run [ms] | of one lane | each lane | apart |",
@@ -28,13 +29,13 @@ def report(numbers: Mapping[str, Any]) -> str:
     records = numbers["records"]
     lines += [
         "",
-        "Lines of three records of the drive bench, each record by itself and all side by side:",
+        "Lines of three records, each record by itself and all side by side:",
         "",
-        "| lines of each record | each by itself [ms] | together [ms] | of each by itself | differ |",
-        "|---|---|---|---|---|",
+        "| model | lengths | lines of each record | each by itself [ms] | together [ms] | of each by itself | differ |",
+        "|---|---|---|---|---|---|---|",
         *(
-            f"| {row['lines']} | {1e3 * row['apart_s']:.1f} | {1e3 * row['together_s']:.1f} | {row['together_s'] / row['apart_s']:.2f}"
-            f" | {row['differ']:.0e} |"
+            f"| {row['model']} | {row['lengths']} | {row['lines']} | {1e3 * row['apart_s']:.1f} | {1e3 * row['together_s']:.1f}"
+            f" | {row['together_s'] / row['apart_s']:.2f} | {row['differ']:.0e} |"
             for row in records
         ),
     ]

@@ -210,6 +210,8 @@ class _Function:
 
 
 class _Read(_Function):
+    """Results go out as they are."""
+
     name, more = "read", "ptr noalias %out"
 
     def finish(self, place: int, value: str) -> None:
@@ -217,6 +219,8 @@ class _Read(_Function):
 
 
 class _Stage(_Function):
+    """Results are rates, by which two states are moved: the next one at which rates are asked for, and the one after the step."""
+
     name, more = "stage", "ptr noalias %base, double %a, ptr noalias %next, ptr %from, double %b, ptr %to"
 
     def begin(self) -> None:

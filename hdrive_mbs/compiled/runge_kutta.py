@@ -1,4 +1,10 @@
-"""The loop around rates and readings, as LLVM text: classical Runge-Kutta of order 4 with a fixed step, on lanes."""
+"""The loop around rates and readings, as LLVM text: classical Runge-Kutta of order 4 with a fixed step, on lanes.
+
+    k1 = f(y), k2 = f(y + h/2 k1), k3 = f(y + h/2 k2), k4 = f(y + h k3),  y + h/6 k1 + h/3 k2 + h/3 k3 + h/6 k4
+
+Rates do not go through memory: each stage adds its part to the state after the step (``%sum``, at last ``%y``) and makes the state of
+the next stage (``%odd`` and ``%even`` in turns; what the fourth makes there is not used).
+"""
 
 from __future__ import annotations
 
