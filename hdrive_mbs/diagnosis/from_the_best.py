@@ -135,6 +135,16 @@ def with_values(effect: Effect, values: Mapping[str, float]) -> Effect:
         return effect
 
 
+def with_choices(effect: Effect, other: Effect) -> Effect:
+    """An effect with what another one has in fields that are in the ``starts`` of both and not searched, like the order of an error; as it
+    is where they do not go together."""
+    names = (type(effect).starts.keys() & type(other).starts.keys()) - searched_fields(type(effect)).keys()
+    try:
+        return effect.replacing(**{name: getattr(other, name) for name in names})
+    except ParameterError:
+        return effect
+
+
 def elsewhere(best: Found | None, base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:
     """The law that did best with the values that it found, at the other places of its family; of a parameter the others, in place of it."""
     if best is None:

@@ -74,6 +74,13 @@ def others(effect: Effect, starts: Sequence[Effect]) -> list[Effect]:
     return made
 
 
+def farthest(effect: Effect, starts: Sequence[Effect]) -> Effect:
+    """Of the starts of an effect's law the one that is farthest from it in the searched fields for which the law names values."""
+    shapes = searched_fields(type(effect))
+    names = [name for name in type(effect).starts if name in shapes]
+    return max(starts, key=lambda start: sum(_apart(effect, name, getattr(start, name), shapes[name].unit) for name in names))
+
+
 def _together(steps: Sequence[tuple[float, dict[str, float]]]) -> tuple[float, dict[str, float]]:
     """How far steps lead together, and what they change."""
     return math.hypot(*(far for far, _ in steps)), {name: value for _, changes in steps for name, value in changes.items()}

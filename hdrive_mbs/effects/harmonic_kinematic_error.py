@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
@@ -10,8 +11,12 @@ import numpy as np
 
 from hdrive_mbs.effects.harmonics import harmonics
 from hdrive_mbs.effects.kinematic_error import KinematicError
+from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
+
+LEADING = 2.0
+"""Size of a harmonic over that of the first one from which the error may be one of its order."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,3 +51,15 @@ class HarmonicKinematicError(KinematicError):
     def error(self, angle: Value) -> Value:
         parts = (self.amplitude, self.phase), (self.second_amplitude, self.second_phase), (self.third_amplitude, self.third_phase)
         return harmonics(angle, self.order, parts) + self.offset
+
+    def elsewhere(self) -> tuple[HarmonicKinematicError, ...]:
+        """With a harmonic that is larger than the first one as the first: an error of order 6 with harmonics of its own shows as the third
+        one of order 2 too, and leaves these harmonics."""
+        found = []
+        for times, size, phase in ((2.0, self.second_amplitude, self.second_phase), (3.0, self.third_amplitude, self.third_phase)):
+            if size > LEADING * self.amplitude:
+                with contextlib.suppress(ParameterError):  # an order beyond all
+                    found.append(
+                        self.replacing(order=times * self.order, amplitude=size, phase=phase, second_amplitude=0.0, third_amplitude=0.0)
+                    )
+        return tuple(found)

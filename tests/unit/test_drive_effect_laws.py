@@ -857,3 +857,30 @@ def test_friction_by_sense_and_angle_is_looked_for_at_bodies_that_only_turn() ->
         assert kind.places(drive_bench.build().network()) == ("motor", "wave_generator", "gear.flexspline", "load")
         assert kind.places(rotor_bench.build().network()) == ()
     assert hm.LoadLag.places(drive_bench.build().network()) == ("load",)
+
+
+def test_an_error_whose_harmonic_leads_is_looked_for_with_that_as_its_order() -> None:
+    """c24 of our own twenty-second drive set: order 6 with harmonics of its own, found as the third harmonic of order 2."""
+    found = hm.HarmonicKinematicError(
+        amplitude=1e-6,
+        order=2.0,
+        phase=1.2,
+        second_amplitude=1.5e-6,
+        second_phase=0.5,
+        third_amplitude=2.2e-5,
+        third_phase=-0.97,
+        offset=3e-5,
+    )
+    [other] = found.elsewhere()
+    assert (other.order, other.amplitude, other.phase, other.offset) == (6.0, 2.2e-5, -0.97, 3e-5)
+    assert (other.second_amplitude, other.third_amplitude) == (0.0, 0.0)
+    angles = np.linspace(0.0, 7.0, 50)
+    assert np.abs(other.error(angles) - found.error(angles)).max() < 2.6e-6  # what the two smaller ones make
+    orders = [
+        item.order for item in hm.HarmonicKinematicError(amplitude=1e-6, order=2.0, second_amplitude=3e-6, third_amplitude=3e-6).elsewhere()
+    ]
+    assert orders == [4.0, 6.0]
+    assert found.replacing(amplitude=2e-5).elsewhere() == ()  # the first one leads
+    assert found.replacing(order=400.0).elsewhere() == ()  # there is no order above 1000
+    beating = hm.BeatingKinematicError(amplitude=1e-6, order=2.0, third_amplitude=2.2e-5, modulation=0.1)
+    assert [(type(item), item.order, item.modulation) for item in beating.elsewhere()] == [(hm.BeatingKinematicError, 6.0, 0.1)]

@@ -15,7 +15,7 @@ from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
-from hdrive_mbs.diagnosis.other_starts import LAWS, MOST, from_other_starts, others
+from hdrive_mbs.diagnosis.other_starts import LAWS, MOST, farthest, from_other_starts, others
 from hdrive_mbs.diagnosis.periods import Periods
 from hdrive_mbs.diagnosis.search import Depth, _Work, is_inexact
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -163,3 +163,11 @@ def test_what_leaves_nothing_is_left_as_it_is(simulator: Simulator, base: Fitted
     with Team(1) as team:
         work = _Work(team, simulator, lambda stage, done, total: None, Depth(), Periods)
         assert work.other_ways([item], base, []) == [item]
+
+
+def test_the_farthest_start_is_that_farthest_in_what_is_searched_and_named() -> None:
+    starts = [hm.LubricatedFriction(coulomb=1.0, smoothing_speed=a, stribeck_speed=b) for a in (0.01, 0.3) for b in (0.1, 5.0)]
+    found = hm.LubricatedFriction(coulomb=7.0, smoothing_speed=0.02, stribeck_speed=0.2)
+    assert farthest(found, starts) == starts[3]
+    assert farthest(starts[3], starts) == starts[0]
+    assert farthest(hm.QuadraticDrag(coefficient=0.3), [hm.QuadraticDrag(coefficient=0.1)]) == hm.QuadraticDrag(coefficient=0.1)

@@ -7,8 +7,9 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.diagnose import factors_of
+from hdrive_mbs.diagnosis.from_the_best import with_choices
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
-from hdrive_mbs.diagnosis.pair_laws import with_other_laws
+from hdrive_mbs.diagnosis.pair_laws import told_otherwise, with_other_laws
 from hdrive_mbs.diagnosis.pairs import contenders
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import suspects
@@ -38,3 +39,27 @@ def test_friction_with_the_wrong_law_beside_a_drag_gets_the_right_one(law_of_fri
     assert isinstance(law, hm.LubricatedFriction)
     assert law.smoothing_speed == pytest.approx(0.3, rel=0.2)
     assert best.suspect.label == best.fitted.hypothesis.added[-1].label
+
+
+def test_another_law_begins_with_the_order_that_was_found_and_with_that_of_a_harmonic_that_leads() -> None:
+    """Of an error no step leads from one order to another one."""
+    tried = candidates(BENCH.scene, [hm.HarmonicKinematicError, hm.BeatingKinematicError, hm.QuadraticDrag])
+    everything = suspects(Hypothesis(factors_of(BENCH)), {}, tried)
+    error = hm.HarmonicKinematicError(amplitude=1e-6, order=2.0, third_amplitude=2e-5, third_phase=0.3, offset=1e-5)
+    full = Hypothesis(factors_of(BENCH), (Added(error, "gear", "error"), Added(hm.QuadraticDrag(coefficient=0.3), "load", "drag")))
+    begun = [added.effect for added in told_otherwise(full, 0, everything)]
+    assert all(isinstance(item, hm.BeatingKinematicError) for item in begun)
+    assert [(item.order, item.amplitude, item.third_amplitude, item.offset) for item in begun[:2]] == [
+        (2.0, 1e-6, 2e-5, 1e-5),
+        (6.0, 2e-5, 0.0, 1e-5),
+    ]
+    assert not list(told_otherwise(full, 1, everything))  # no other law of a drag was given
+
+
+def test_a_choice_that_another_law_may_not_have_leaves_it_as_it_was() -> None:
+    beating = hm.BeatingKinematicError(amplitude=1e-6, order=3.0)
+    plain = hm.KinematicError(amplitude=1e-5, order=6.0, follows="flexspline")
+    assert with_choices(beating, plain) == beating.replacing(order=6.0)  # what it follows is no choice of it
+    assert with_choices(plain, beating) == plain.replacing(order=3.0)
+    assert with_choices(plain, hm.HarmonicKinematicError(amplitude=1e-6, order=4.0)) == plain.replacing(order=4.0, follows="wave_generator")
+    assert with_choices(hm.QuadraticDrag(coefficient=0.3), plain) == hm.QuadraticDrag(coefficient=0.3)
