@@ -11,7 +11,19 @@ from hdrive_mbs.diagnosis.from_the_best import values_of, with_values
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect, renamed
-from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, FIRST, Found, Task, further, is_hopeless, rivalling, run_task, those_that_ran
+from hdrive_mbs.diagnosis.tasks import (
+    CONVERGED,
+    FINE,
+    FIRST,
+    Found,
+    Task,
+    cheapest,
+    further,
+    is_hopeless,
+    rivalling,
+    run_task,
+    those_that_ran,
+)
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.verdict import left
 from hdrive_mbs.effects.effect import Effect
@@ -91,11 +103,12 @@ def alone(
                 start = hypothesis.start(fitted.hypothesis.nominal_part(fitted.z))
                 tasks.append(Task(hypothesis, start, None, CONVERGED, FINE, beat=rivalling(best.fitted)))
                 whose.append(suspect)
-    return those_that_ran(whose, team.map(run_task, simulator, tasks))
+    return cheapest(those_that_ran(whose, team.map(run_task, simulator, tasks)))
 
 
 def _singled_out(full: Hypothesis, suspect: Suspect, second: Label) -> Iterator[Hypothesis]:
-    """A suspect with the values that it has in a pair; of a second cause beside a parameter other laws too."""
+    """A suspect with the values that it has in a pair; of a second cause beside a parameter other laws too, with all values in fields of
+    the same name and with those alone that decide whether they show."""
     old = suspect.all[0]
     if suspect.law == PARAMETER:
         if set(old.loose) <= set(full.loose):
@@ -104,9 +117,12 @@ def _singled_out(full: Hypothesis, suspect: Suspect, second: Label) -> Iterator[
     for added in full.added:
         is_same = type(added.effect).__name__ == suspect.law
         if added.label == suspect.label and (is_same or (full.loose and suspect.label == second)):
-            last = old.added[-1]
-            effect = added.effect if is_same else with_values(last.effect, values_of(added.effect))
-            yield Hypothesis(old.factors, (Added(effect, last.at, last.name),), old.loose)
+            last, values = old.added[-1], values_of(added.effect)
+            # the rest may be bent by standing for another law
+            decisive = {name: value for name, value in values.items() if name in type(added.effect).decisive}
+            others = [with_values(last.effect, some) for some in (values, decisive) if some]
+            for effect in [added.effect] if is_same else dict.fromkeys(others):
+                yield Hypothesis(old.factors, (Added(effect, last.at, last.name),), old.loose)
 
 
 def moved(team: Team, simulator: Simulator, pairs: Sequence[Found], tried: Sequence[Candidate]) -> list[Found]:
