@@ -10,7 +10,7 @@ from hdrive_mbs.compiled.table_code import table_code
 from hdrive_mbs.compiled.vector_functions import BOTH, VECTORS, sine_and_cosine, vector_function
 
 _PLAIN = {"add": "fadd contract", "sub": "fsub contract", "mul": "fmul contract", "div": "fdiv"}
-"""A product that is added once is rounded once, where the processor can (``contract``): a fifth of a run of the benches."""
+"""A product that is added once is rounded once, where the processor can (``contract``)."""
 _COMPARE = {"lt": "olt", "le": "ole", "eq": "oeq"}
 _INTRINSIC = {"sqrt": "sqrt", "abs": "fabs", "floor": "floor", "ceil": "ceil"}
 _LIBRARY = ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "pow", "atan2")

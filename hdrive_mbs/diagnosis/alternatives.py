@@ -52,7 +52,7 @@ class Planned:
 def records_to_take(
     bench: Bench, records: Sequence[Record], evidence: Evidence, claim: Claim, team: Team, report: Report | None
 ) -> Planned:
-    """Of what a claim leaves tied."""
+    """Records that would separate what is claimed from what cannot be told from it; none where nothing is tied."""
     tied = alternatives(evidence, claim) if claim.tied else {}
     if len(tied) < 2:
         return Planned()

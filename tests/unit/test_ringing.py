@@ -20,7 +20,7 @@ from hdrive_mbs.diagnosis.ringing import LOWEST, POWERS, Ringing, ringing_words
 from hdrive_mbs.diagnosis.search import fit_nominal
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.traces import traces
-from hdrive_mbs.diagnosis.verify import engine_difference
+from hdrive_mbs.diagnosis.verify import engine_difference, step_error, verified
 from models import jeffcott
 
 EVERY, SAMPLES, NOISE = 5e-4, 4000, 2e-7
@@ -222,3 +222,21 @@ def test_the_engine_is_compared_without_the_error_of_its_own_step(record: hm.Rec
     assert sharpened < 0.01 * plain
     assert explicit < 0.01 * plain
     assert explicit != sharpened
+
+
+def test_what_the_step_of_the_search_errs_by_is_told_as_its_own(record: hm.Record) -> None:
+    """Engine and search go by the same rule with the same step then, and agree; half of it leaves a sixteenth of the error."""
+    sharp = {name: hm.Measured(channel=name, noise=5e-13) for name in ("disc.x", "disc.y")}
+    trials = dataclasses.replace(bench(line(), 0.2), measured=sharp).trials(record.between(0.0, 0.2))
+    simulator = Simulator(trials, STEP)
+    fitted = fit(simulator, Hypothesis(factors=()), np.zeros(0), steps=0)
+    [own], [fine] = (Simulator(trials, STEP, parts=parts).columns(fitted.hypothesis, fitted.z) for parts in (1, 16))
+    error = max(float(np.sqrt(np.mean((own[name] - fine[name]) ** 2))) for name in own) / 5e-13
+    assert error > 0.3
+    # the next order is (w h)^2 of it, 1.5e-4 at 240 rad/s
+    assert step_error(simulator, fitted) == pytest.approx(15.0 / 16.0 * error, rel=1e-2)
+    found = verified(simulator, fitted)
+    assert found.differs
+    assert "multibody engine agree" in found.text
+    assert f"step={0.5 * STEP:.3g}" in found.text
+    assert engine_difference(simulator, fitted) < 1e-4

@@ -34,7 +34,7 @@ class _Asked:
 
 
 @dataclass(frozen=True, eq=False)
-class _Planned:
+class _Item:
     """A plan and its trials on the bench."""
 
     plan: Plan
@@ -75,7 +75,7 @@ def next_records(
     if not plans:
         raise ParameterError("The menu is empty: give a plan, or None for the standard ones.")
     said = partial(report or (lambda stage, done, total: None), "planning the next record")
-    asked, items = _Asked(fits, step, every, alone), [_Planned(plan, bench.planned(plan)) for plan in plans]
+    asked, items = _Asked(fits, step, every, alone), [_Item(plan, bench.planned(plan)) for plan in plans]
     answers = (team or Team(1)).map(_separated, asked, items, said)
     found = [item for item in answers if isinstance(item, Separation)]
     if not found:
@@ -90,10 +90,10 @@ def separation(
 
     Raises AnalysisError where a fit cannot be simulated through it.
     """
-    return _separation(_Asked(fits, step, every, alone), _Planned(plan, bench.planned(plan)))
+    return _separation(_Asked(fits, step, every, alone), _Item(plan, bench.planned(plan)))
 
 
-def _separated(asked: _Asked, item: _Planned) -> Separation | str:
+def _separated(asked: _Asked, item: _Item) -> Separation | str:
     """Likewise; in words why not where a fit cannot be simulated."""
     try:
         return _separation(asked, item)
@@ -101,7 +101,7 @@ def _separated(asked: _Asked, item: _Planned) -> Separation | str:
         return str(error)
 
 
-def _separation(asked: _Asked, item: _Planned) -> Separation:
+def _separation(asked: _Asked, item: _Item) -> Separation:
     labels, step = tuple(asked.fits), asked.step or 0.5 * item.plan.every
     predictions = Predictions(item.trials, tuple(asked.fits.values()), step=step, every=asked.every)
     least, first, second = math.inf, 0, 1
