@@ -211,6 +211,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.oil_whirl_onset": ("OilWhirlOnset",),
     "effects.varying_oil_whirl": ("VaryingOilWhirl",),
     "effects.oil_whirl_cycle": ("OilWhirlCycle",),
+    "effects.arc_crack": ("ArcCrack",),
     "effects.ball_pass": ("BallPass",),
     "effects.ball_pass_harmonics": ("BallPassHarmonics",),
     "effects.inner_race_pass": ("InnerRacePass",),

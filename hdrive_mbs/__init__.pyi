@@ -102,6 +102,7 @@ from hdrive_mbs.diagnosis.report_text import write_report as write_report
 from hdrive_mbs.diagnosis.result import Diagnosis as Diagnosis
 from hdrive_mbs.diagnosis.trial import Trial as Trial
 from hdrive_mbs.effects.actuator_lag import ActuatorLag as ActuatorLag
+from hdrive_mbs.effects.arc_crack import ArcCrack as ArcCrack
 from hdrive_mbs.effects.ball_pass import BallPass as BallPass
 from hdrive_mbs.effects.ball_pass_harmonics import BallPassHarmonics as BallPassHarmonics
 from hdrive_mbs.effects.bearing_anisotropy import BearingAnisotropy as BearingAnisotropy

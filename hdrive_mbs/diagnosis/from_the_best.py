@@ -19,7 +19,9 @@ from hdrive_mbs.errors import ParameterError
 STEPS = 8
 """Joint steps of another law or place."""
 STARTS = 2
-"""Of another law of the best label."""
+"""Of another law of the best label, from the values of each of its best two laws: what one of them leaves open, another may tell.  Where a
+crack opens at a phase of its own, its side is known but for half a turn, and from the wrong one a steep crack shrank to nothing (c04 of our
+own 23rd rotor set, labels open)."""
 BENT = 3.0
 """Prior standard deviations of a parameter from which on it is suspected whatever a look shows."""
 RIVALS, PATIENT = 2, 40
@@ -73,22 +75,30 @@ def other_laws(found: Sequence[Found], base: Fitted, everything: Sequence[Suspec
     if not found or found[0].suspect.law == PARAMETER:
         return []
     best, known = found[0].fitted, {(item.suspect.label, item.suspect.law) for item in found}
-    values = _values([item.fitted for item in found if item.suspect.label == found[0].suspect.label])
+    fits = [item.fitted for item in found if item.suspect.label == found[0].suspect.label]
+    told = [_values(fits), _values([*fits[1:2], *fits])]
     tasks = []
     for suspect in everything:
         if suspect.label != found[0].suspect.label or suspect.law == PARAMETER or (suspect.label, suspect.law) in known:
             continue
         made: dict[Effect, Hypothesis] = {}
-        for start in suspect.all:
-            *before, last = start.added
-            effect = with_values(last.effect, values)
-            made.setdefault(effect, Hypothesis(start.factors, (*before, Added(effect, last.at, last.name)), start.loose))
-        tasks += [(suspect, _from(best, base, start)) for start in list(made.values())[:STARTS]]
+        for values in told:
+            some: dict[Effect, Hypothesis] = {}
+            for start in suspect.all:
+                *before, last = start.added
+                effect = with_values(last.effect, values)
+                some.setdefault(effect, Hypothesis(start.factors, (*before, Added(effect, last.at, last.name)), start.loose))
+            made |= dict(list(some.items())[:STARTS])
+        tasks += [(suspect, _from(best, base, start)) for start in made.values()]
     return tasks
 
 
 def twins(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect], simulator: Simulator) -> list[tuple[Suspect, Task]]:
-    """Laws under other names that act exactly as the best one does, from what it found, as far as they have not come out as good."""
+    """Laws under other names that act as the best one does (``Effect.twins``), from what it found, as far as they have not come out as good.
+
+    A crack that the moment does not move is a keyway: of a keyway, which did not show in the first look, it took all with a number more
+    (c02 of our own 23rd rotor set, labels open).
+    """
     if not found or found[0].suspect.law == PARAMETER or not found[0].fitted.hypothesis.added:
         return []
     best = found[0].fitted

@@ -27,7 +27,7 @@ def load_of(piece: ShaftPiece, shape: FloatArray) -> Load:
     result: Load = {}
     for row, force in enumerate(forces):
         if force != 0.0:
-            for name, factor in piece.stretch(np.eye(12)[row]).items():
+            for name, factor in piece.stretch(np.eye(12)[row].tolist()).items():
                 result[name] = result.get(name, 0.0) + factor * float(force)
     return result
 

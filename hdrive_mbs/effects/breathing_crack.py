@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,5 +42,5 @@ class BreathingCrack(CrackEffect):
         down, slope = gravity[0] * cosine + gravity[1] * sine, gravity[1] * cosine - gravity[0] * sine
         if self.steepness < 1e-3:
             return 0.5 * (1.0 + down), 0.5 * slope
-        bent, full = np.tanh(self.steepness * down), math.tanh(self.steepness)
+        bent, full = np.tanh(self.steepness * down), np.tanh(self.steepness)
         return 0.5 * (1.0 + bent / full), 0.5 * self.steepness * slope * (1.0 - bent * bent) / full

@@ -95,8 +95,8 @@ class Effect(Described, ABC):
         return ()
 
     def twins(self, sense: int) -> tuple[Effect, ...]:
-        """Effects of other classes that act exactly as it does with its values, so that no record can tell them apart: a search that
-        ends with one of them names the others too.
+        """Effects of other classes that act exactly as it does with its values, so that no record can tell them apart, or as it does at an
+        end of its range: a search that ends with one of them fits the others too.
 
         sense : in which the body at its place turns forward, 1 or -1
 

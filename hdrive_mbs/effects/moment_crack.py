@@ -9,6 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hdrive_mbs.effects.crack_effect import CrackEffect
+from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.effects.keyway import Keyway
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
 
@@ -35,6 +37,10 @@ class MomentCrack(CrackEffect):
     closing_moment: float = parameter("N m", "M_c, moment over which it opens and shuts", above=0.0, high=1e5, typical=(0.3, 200.0))
 
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {**CrackEffect.starts, "closing_moment": (15.0,)}
+
+    def twins(self, sense: int) -> tuple[Effect, ...]:
+        """A keyway, as which it acts where M_c is large: open by half whatever the moment."""
+        return (Keyway(compliance=0.5 * self.compliance, cross_share=self.cross_share, position=self.position, angle=self.angle),)
 
     def opening(self, moment: Value, cosine: Value, sine: Value, gravity: tuple[float, float]) -> tuple[Value, Value]:
         return 0.5 * (1.0 - np.tanh(moment / self.closing_moment)), 0.0

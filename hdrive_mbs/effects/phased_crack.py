@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
 from hdrive_mbs.effects.crack_effect import CrackEffect
 from hdrive_mbs.expression import Value
 from hdrive_mbs.quantities import parameter
@@ -35,8 +37,9 @@ class PhasedCrack(CrackEffect):
     }
 
     decisive: ClassVar[tuple[str, ...]] = ("angle", "phase")
+    half_turn: ClassVar[frozenset[str]] = frozenset({"angle"})
     leads: ClassVar[bool] = True
 
     def opening(self, moment: Value, cosine: Value, sine: Value, gravity: tuple[float, float]) -> tuple[Value, Value]:
-        c, s = math.cos(self.angle + self.phase), math.sin(self.angle + self.phase)
+        c, s = np.cos(self.angle + self.phase), np.sin(self.angle + self.phase)
         return 0.5 * (1.0 + c * cosine + s * sine), 0.5 * (s * cosine - c * sine)

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from hdrive_mbs.network.bearing_draft import ShaftPiece
 
-FloatArray = npt.NDArray[np.float64]
-
 _X, _Y = (0, 4, 6, 10), (1, 3, 7, 9)
 """Places of displacement and tilt at both ends in the 12-vector, in the plane (x, theta) and in the plane (y, -psi)."""
-_SIGNS = np.array([1.0, -1.0, 1.0, -1.0])
+_SIGNS = (1.0, -1.0, 1.0, -1.0)
 
 
-def _rows(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _rows(values: Sequence[float]) -> tuple[list[float], list[float]]:
     """The same function of displacements and slopes in both planes, as rows over the 12-vector."""
-    x, y = np.zeros(12), np.zeros(12)
-    x[list(_X)], y[list(_Y)] = values, _SIGNS * values
+    x, y = [0.0] * 12, [0.0] * 12
+    for at_x, at_y, sign, value in zip(_X, _Y, _SIGNS, values, strict=True):
+        x[at_x], y[at_y] = value, sign * value
     return x, y
 
 
@@ -35,11 +34,6 @@ class BendingShape:
     size: float
 
 
-def _shape(piece: ShaftPiece, values: FloatArray) -> BendingShape:
-    size = float(np.max(np.abs(values)))
-    return BendingShape({key: piece.stretch(row) for key, row in zip("xy", _rows(values / size), strict=True)}, size)
-
-
 def moment_at(piece: ShaftPiece, share: float) -> tuple[BendingShape, float]:
     """Bending moment [N m] at a share of the length from end a, positive when the piece curves towards +x (+y), from the
     displacements of its ends; and the moment per kink [N m/rad] there with both ends held.
@@ -48,8 +42,11 @@ def moment_at(piece: ShaftPiece, share: float) -> tuple[BendingShape, float]:
     reciprocal theorem of Betti), so that it is met by h = z dM/dx_a - dM/dtheta_a.
     """
     plane = piece.bending[np.ix_(_X, _X)]
-    values = share * piece.length * plane[0] - plane[1]
-    return _shape(piece, values), float(share * piece.length * values[0] - values[1])
+    place = share * piece.length  # no arrays from here on, which would not see that a share is tracked (tracked.py)
+    values = [place * force - moment for force, moment in zip(plane[0].tolist(), plane[1].tolist(), strict=True)]
+    size = float(np.max(np.abs(plane[1])))
+    stretches = {key: piece.stretch(row) for key, row in zip("xy", _rows([value / size for value in values]), strict=True)}
+    return BendingShape(stretches, size), place * values[0] - values[1]
 
 
 def bent_shapes(piece: ShaftPiece) -> list[tuple[BendingShape, float]]:
@@ -61,6 +58,6 @@ def bent_shapes(piece: ShaftPiece) -> list[tuple[BendingShape, float]]:
     """
     plane, half = piece.bending[np.ix_(_X, _X)], 0.5 * piece.length
     turned, sheared = 0.5 * (plane[1, 1] - plane[1, 3]) / half**2, plane[0, 0]
-    shapes = (np.array([0.0, -half, 0.0, half]), float(turned)), (np.array([-1.0, -half, 1.0, -half]), float(sheared))
+    shapes = ((0.0, -half, 0.0, half), float(turned)), ((-1.0, -half, 1.0, -half), float(sheared))
     pairs = ((dict(zip("xy", _rows(values), strict=True)), stiffness) for values, stiffness in shapes)
     return [(BendingShape({key: piece.stretch(row) for key, row in rows.items()}, 1.0), stiffness) for rows, stiffness in pairs]

@@ -77,7 +77,7 @@ def _deflected(draft: Draft, place: str, station: Station, pins: dict[str, Stati
     names = list(dict.fromkeys(c for piece in draft.shafts for end in piece.ends for c in end.names if c != "ground"))
     stiffness = np.zeros((len(names),) * 2)
     for piece in draft.shafts:
-        to = np.array([_row(piece.stretch(row), names) for row in np.eye(12)])
+        to = np.array([_row(piece.stretch(row.tolist()), names) for row in np.eye(12)])
         stiffness += to.T @ piece.bending @ to
     held = np.array([_row(pin.stretch(direction), names) for pin in pins.values()])
     pushed = _row(station.stretch(direction), names)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -91,13 +91,15 @@ class ShaftPiece:
     length: float
     bending: FloatArray
 
-    def stretch(self, row: FloatArray) -> dict[str, float]:
+    def stretch(self, row: Sequence[float]) -> dict[str, float]:
         """A row over the 12-vector as factors of coordinates."""
         result: dict[str, float] = {}
         for k, station in enumerate(self.ends):
-            for name, factor in zip(station.names, row[6 * k : 6 * k + 6] @ station.arm(), strict=True):
+            for name, column in zip(station.names, station.arm().T.tolist(), strict=True):
+                some = zip(row[6 * k : 6 * k + 6], column, strict=True)
+                factor = sum(one * arm for one, arm in some if arm != 0.0)
                 if factor != 0.0 and name != "ground":
-                    result[name] = result.get(name, 0.0) + float(factor)
+                    result[name] = result.get(name, 0.0) + factor
         return result
 
     def spin(self, share: float = 0.0) -> dict[str, float]:

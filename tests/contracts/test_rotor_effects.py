@@ -84,6 +84,9 @@ EXAMPLES = {
         Example(hm.BreathingCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, steepness=2.0), "first", ("compliance",)),
         Example(hm.MomentCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, closing_moment=3.0), "first", ("compliance",)),
         Example(hm.SteepCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, steepness=2.0), "first", ("compliance",)),
+        Example(
+            hm.ArcCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, steepness=2.0, opens_at=0.5), "first", ("compliance",)
+        ),
         Example(hm.Keyway(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0), "first", ("compliance",)),
         Example(hm.PhasedCrack(compliance=1e-4, cross_share=0.3, position=0.8, angle=-1.0, phase=0.7), "first", ("compliance",)),
         Example(hm.InternalDamping(time=1e-3), "first", ("time",)),

@@ -215,6 +215,7 @@ ROTOR_EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.BreathingCrack(compliance=1e-7, position=0.5), "shaft.element_2"),
     (hm.MomentCrack(compliance=1e-7, position=0.5, closing_moment=10.0), "shaft.element_2"),
     (hm.SteepCrack(compliance=1e-7, position=0.5, steepness=2.0, cross_share=0.2), "shaft.element_2"),
+    (hm.ArcCrack(compliance=1e-7, position=0.5, steepness=2.0, opens_at=0.4), "shaft.element_2"),
     (hm.PhasedCrack(compliance=1e-7, position=0.5, phase=0.3), "shaft.element_2"),
     (hm.Keyway(compliance=1e-7, position=0.5, angle=0.3), "shaft.element_2"),
     (hm.InternalDamping(time=1e-6), "shaft.element_1"),
