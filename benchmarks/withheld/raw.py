@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+import hdrive_mbs as hm
 from benchmarks.withheld.finding import Claimed, Finding
 from benchmarks.withheld.names import Label
 from hdrive_mbs.diagnosis import verdict
@@ -104,7 +105,8 @@ def _stored(entry: Mapping[str, Any]) -> Found:
 
 def _added(item: Mapping[str, Any]) -> Any:
     family, at = item["label"]
-    effect = type(str(item["law"]), (), {"kind": item["kind"], "family": family})()
+    limits = getattr(getattr(hm, str(item["law"]), None), "limits", ())
+    effect = type(str(item["law"]), (), {"kind": item["kind"], "family": family, "limits": limits})()
     return type("Added", (), {"effect": effect, "at": at, "label": (family, at)})()
 
 

@@ -94,7 +94,8 @@ def other_laws(found: Sequence[Found], base: Fitted, everything: Sequence[Suspec
 
 
 def twins(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect], simulator: Simulator) -> list[tuple[Suspect, Task]]:
-    """Laws under other names that act as the best one does (``Effect.twins``), from what it found, as far as they have not come out as good.
+    """Laws under other names that act as the best one does (``Effect.twins``) or does at an end of its range (``Effect.limits``), from what
+    it found, as far as they have not come out as good.
 
     A crack that the moment does not move is a keyway: of a keyway, which did not show in the first look, it took all with a number more
     (c02 of our own 23rd rotor set, labels open).
@@ -103,20 +104,20 @@ def twins(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect], s
         return []
     best = found[0].fitted
     cause = best.hypothesis.rescaled(best.z)[0].added[-1]
-    if type(cause.effect).twins is Effect.twins:
-        return []
     network = simulator.trials[0].scene.network()
     senses = {body.name: body.sense for body in network.bodies}
+    here = {suspect.law: suspect for suspect in everything if suspect.law != PARAMETER and suspect.all[0].added[-1].at == cause.at}
+    alike = list(cause.effect.twins(senses.get(network.places.get(cause.at, cause.at), 1)))
+    limits = [here[kind.__name__].all[0].added[-1].effect for kind in type(cause.effect).limits if kind.__name__ in here]
+    alike += [with_values(effect, values_of(cause.effect)) for effect in limits]
     tasks = []
-    for twin in cause.effect.twins(senses.get(network.places.get(cause.at, cause.at), 1)):
-        for suspect in everything:
-            if suspect.law != type(twin).__name__ or suspect.all[0].added[-1].at != cause.at:
-                continue
-            if any(item.suspect.label == suspect.label and item.fitted.cost < best.cost + ALIKE for item in found):
-                continue
-            old = suspect.all[0]
-            added = (*old.added[:-1], Added(twin, cause.at, old.added[-1].name))
-            tasks.append((suspect, _from(best, base, Hypothesis(old.factors, added, old.loose))))
+    for effect in alike:
+        suspect = here.get(type(effect).__name__)
+        if suspect is None or any(item.suspect.label == suspect.label and item.fitted.cost < best.cost + ALIKE for item in found):
+            continue
+        old = suspect.all[0]
+        added = (*old.added[:-1], Added(effect, cause.at, old.added[-1].name))
+        tasks.append((suspect, _from(best, base, Hypothesis(old.factors, added, old.loose))))
     return tasks
 
 

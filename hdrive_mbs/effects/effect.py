@@ -80,6 +80,9 @@ class Effect(Described, ABC):
     """Those of them of which already a first look takes every value: away from the right one the effect does not show."""
     half_turn: ClassVar[frozenset[str]] = frozenset()
     """Angles [rad] that say the same once more after half a turn."""
+    limits: ClassVar[tuple[type[Effect], ...]] = ()
+    """Simpler effects of other families as which it acts at an end of its range: a search that ends with it fits these from its values, and
+    where one of them comes out better it is no more than an imitation of that."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
@@ -95,8 +98,8 @@ class Effect(Described, ABC):
         return ()
 
     def twins(self, sense: int) -> tuple[Effect, ...]:
-        """Effects of other classes that act exactly as it does with its values, so that no record can tell them apart, or as it does at an
-        end of its range: a search that ends with one of them fits the others too.
+        """Effects of other classes that act exactly as it does with its values, so that no record can tell them apart: a search that
+        ends with one of them names the others too.
 
         sense : in which the body at its place turns forward, 1 or -1
 

@@ -37,10 +37,7 @@ class MomentCrack(CrackEffect):
     closing_moment: float = parameter("N m", "M_c, moment over which it opens and shuts", above=0.0, high=1e5, typical=(0.3, 200.0))
 
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {**CrackEffect.starts, "closing_moment": (15.0,)}
-
-    def twins(self, sense: int) -> tuple[Effect, ...]:
-        """A keyway, as which it acts where M_c is large: open by half whatever the moment."""
-        return (Keyway(compliance=0.5 * self.compliance, cross_share=self.cross_share, position=self.position, angle=self.angle),)
+    limits: ClassVar[tuple[type[Effect], ...]] = (Keyway,)  # with a large M_c, open by half whatever the moment
 
     def opening(self, moment: Value, cosine: Value, sine: Value, gravity: tuple[float, float]) -> tuple[Value, Value]:
         return 0.5 * (1.0 - np.tanh(moment / self.closing_moment)), 0.0
