@@ -17,7 +17,6 @@ from hdrive_mbs.diagnosis.simulator import Simulator, chi_square
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import HdriveError
 from hdrive_mbs.records.record import Record
-from hdrive_mbs.units import factor
 
 FAR, NEARER, MOVING = 100.0, 0.1, 0.5
 """Mean square of the nominal residual (noise: 1) from which this is asked, and the shares that another unit may leave of it, and of
@@ -50,8 +49,7 @@ def drives_scaled(bench: Bench, records: Sequence[Record], simulator: Simulator,
 
 def _sizes(unit: str) -> Iterator[tuple[float, str]]:
     """Factors that put numbers right that were read in the wrong unit, with what they say."""
-    for other in OTHERS.get(unit, ()):
-        size = factor(other, unit, "scale check")
+    for other, size in OTHERS.get(unit, {}).items():
         yield size, f"its numbers were in {other} and had been read as {unit}"
         yield 1.0 / size, f"its numbers were in {unit} and had been read as {other}"
 

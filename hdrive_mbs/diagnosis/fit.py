@@ -158,7 +158,10 @@ def fit(
         damping = min(max(damping * (30.0 if factor >= 5.0 else 1.0 if factor >= 3e-2 else 0.3), 1e-6), 1e6)
         of_differences, well = fresh, best == 0 and WELL_PROMISED[0] < kept_promise < WELL_PROMISED[1]
         moved = points[best][0] - z
-        columns = secant(columns, chosen[mask] - residuals[mask], moved, np.diag(systems[1.0][0]) + precisions) if well else None
+        if well:
+            mend(columns, chosen[mask] - residuals[mask], moved, np.diag(systems[1.0][0]) + precisions)
+        else:
+            columns = None
         fresh = False
         z, residuals, cost = points[best][0], chosen, costs[best]
         found.clear()  # of all steps, while the next differences are made
@@ -205,8 +208,8 @@ def stalls(costs: Sequence[float], noise: float) -> bool:
     return len(costs) > LONG and costs[-1 - LONG] - costs[-1] < SLOWEST * (costs[-1 - LONG] - noise)
 
 
-def secant(columns: FloatArray, change: FloatArray, move: FloatArray, scale: FloatArray) -> FloatArray:
-    """The Jacobian nearest to the given one that gives the change which a move made: Broyden's update.
+def mend(columns: FloatArray, change: FloatArray, move: FloatArray, scale: FloatArray) -> None:
+    """Change a Jacobian to the nearest one that gives the change which a move made: Broyden's update, in place.
 
     columns : shape (n, size);  change : of the residuals, (n,);  move : (size,);  scale : squares of the coordinates' weights, (size,)
 
@@ -214,10 +217,8 @@ def secant(columns: FloatArray, change: FloatArray, move: FloatArray, scale: Flo
     """
     weighted = scale * move
     missed, along = change - columns @ move, weighted / max(float(move @ weighted), TINY)
-    mended = np.empty_like(columns)
     for k, part in enumerate(along):
-        np.add(columns[:, k], part * missed, out=mended[:, k])
-    return mended
+        columns[:, k] += part * missed
 
 
 def _cost(simulator: Simulator, hypothesis: Hypothesis, residuals: FloatArray | None, z: FloatArray) -> float:

@@ -22,20 +22,19 @@ from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import RecordError
-from hdrive_mbs.units import factor
 
 FloatArray = npt.NDArray[np.float64]
 
-OTHERS = {
-    "rad": ("deg", "revolution"),
-    "rad/s": ("rpm", "deg/s", "revolution/s"),
-    "N m": ("mN*m", "kN*m"),
-    "m": ("mm", "um"),
-    "m/s": ("mm/s",),
-    "m/s^2": ("g_0", "mm/s^2"),
-    "N": ("kN",),
+OTHERS: Mapping[str, Mapping[str, float]] = {
+    "rad": {"deg": math.pi / 180.0, "revolution": math.tau},
+    "rad/s": {"rpm": math.pi / 30.0, "deg/s": math.pi / 180.0, "revolution/s": math.tau},
+    "N m": {"mN*m": 1e-3, "kN*m": 1e3},
+    "m": {"mm": 1e-3, "um": 1e-6},
+    "m/s": {"mm/s": 1e-3},
+    "m/s^2": {"g_0": 9.80665, "mm/s^2": 1e-3},
+    "N": {"kN": 1e3},
 }
-"""Unit of a scene -> units that a log may be in instead."""
+"""Unit of a scene -> units that a log may be in instead, with their size."""
 CLEAR = 0.98
 """Squared correlation from which a factor is believed."""
 LIKELY = 0.9
@@ -162,8 +161,7 @@ def _together(values: FloatArray, reference: FloatArray, least: float) -> tuple[
 
 
 def _causes(ratio: float, unit: str) -> Iterator[str]:
-    for other in OTHERS[unit]:
-        size = factor(other, unit, "scale check")
+    for other, size in OTHERS[unit].items():
         if abs(ratio * size - 1.0) < NEAR:
             yield f"its numbers were in {other} and had been read as {unit}"
         if abs(ratio / size - 1.0) < NEAR:

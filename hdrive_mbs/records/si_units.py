@@ -25,6 +25,9 @@ SI_UNITS = (
     "K", "K/s", "A", "A/s", "V", "V/s", "ohm", "H", "F", "C", "T", "Wb", "N m/A", "V s/rad",
 )  # fmt: skip
 """Units that a channel can have inside."""
+READ_AT_ONCE = frozenset(SI_UNITS) - {"N s/m", "W", "N m/A"}
+"""Those that are what they say, without those whose powers an earlier one has: pint, which takes a second and up to 120 MB with what it
+loads, is not asked."""
 
 AMBIGUOUS = {
     "g": "'g' is the gram; an acceleration in multiples of gravity is 'g_0', a mass 'gram'",
@@ -103,6 +106,8 @@ def conversion(text: str, where: str) -> Conversion:
     meaning = AMBIGUOUS.get("1/min" if _PER_MINUTE.fullmatch(given) else given if given == "g" else given.lower() if given != "G" else "")
     if meaning is not None:
         raise UnitError(f"{where}: unit {text!r} is ambiguous: {meaning}.")
+    if given in READ_AT_ONCE:
+        return Conversion(given, 1.0)
     spelled = given
     for pattern, replacement in _SPELLINGS:
         spelled = pattern.sub(replacement, spelled)

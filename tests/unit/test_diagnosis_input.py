@@ -22,7 +22,7 @@ from hdrive_mbs.diagnosis.input_checks import check_trials, not_compared, not_dr
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.report_text import report_text
 from hdrive_mbs.diagnosis.result import Diagnosis
-from hdrive_mbs.diagnosis.scale_checks import check_scale, looks_scaled
+from hdrive_mbs.diagnosis.scale_checks import OTHERS, check_scale, looks_scaled
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.effects.bearing_cubic_stiffness import BearingCubicStiffness
@@ -37,6 +37,7 @@ from hdrive_mbs.quantities import parameter
 from hdrive_mbs.records.measurement import Measurement
 from hdrive_mbs.records.record import Record
 from hdrive_mbs.records.repair import repaired
+from hdrive_mbs.units import factor
 from tests.unit.diagnosis_cases import DURATION, KNOWLEDGE, STEP, bench, quiet, records
 
 CONSTANT = hm.SpeedTable(times=(0.0, 0.1, 10.0), speeds=(0.0, 50.0, 50.0))
@@ -559,3 +560,9 @@ def test_a_nominal_scene_that_cannot_be_simulated_is_refused() -> None:
     stiff = bench().scene.replacing({"gear.stiffness.linear": 1.2e13})
     with pytest.raises(hm.AnalysisError, match="nominal scene cannot be simulated through the records"):
         diagnose(dataclasses.replace(bench(), scene=stiff), quiet(), candidates=(), pictures=False, step=STEP)
+
+
+def test_units_that_a_log_may_be_in_have_the_size_that_pint_gives() -> None:
+    for unit, others in OTHERS.items():
+        for other, size in others.items():
+            assert size == pytest.approx(factor(other, unit, "here"), rel=1e-14)

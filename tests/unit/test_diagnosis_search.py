@@ -19,7 +19,7 @@ from hdrive_mbs.diagnosis.candidates import Candidate, candidates
 from hdrive_mbs.diagnosis.choosing import beyond, enough, not_begun, passed_over, picked, spread_out
 from hdrive_mbs.diagnosis.diagnose import factors_of, strongest_first
 from hdrive_mbs.diagnosis.differences import jacobian
-from hdrive_mbs.diagnosis.fit import Fitted, fit, secant
+from hdrive_mbs.diagnosis.fit import Fitted, fit, mend
 from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, unfinished
 from hdrive_mbs.diagnosis.gather import ALIKE, SINGLES, close_laws, serious
 from hdrive_mbs.diagnosis.ground import LIKELY, held, is_bent, screen_from
@@ -73,10 +73,11 @@ def test_a_jacobian_along_axes_is_the_same_in_stretches_of_any_length(simulator:
     np.testing.assert_allclose(parts, whole, rtol=1e-9, atol=1e-9 * np.abs(whole).max())
 
 
-def test_secant_gives_the_change_that_was_seen_and_leaves_what_lies_across_the_move() -> None:
+def test_a_mended_jacobian_gives_the_change_that_was_seen_and_leaves_what_lies_across_the_move() -> None:
     rng = np.random.default_rng(1)
     columns, change, move, scale = rng.normal(size=(30, 4)), rng.normal(size=30), rng.normal(size=4), rng.uniform(0.1, 9.0, 4)
-    mended = secant(columns, change, move, scale)
+    mended = columns.copy()
+    mend(mended, change, move, scale)
     np.testing.assert_allclose(mended @ move, change, rtol=1e-12)
     across = rng.normal(size=4)
     across -= move * (across @ (scale * move)) / (move @ (scale * move))

@@ -6,6 +6,8 @@ import contextlib
 import math
 import os
 import string
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -16,8 +18,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import hdrive_mbs as hm
+from hdrive_mbs.records import si_units
 from hdrive_mbs.records.formats import apart
 from hdrive_mbs.records.formats.file_format import format_of, formats
+from hdrive_mbs.records.reading import read_record
 from hdrive_mbs.records.si_units import conversion
 from tests.unit.warm_reader import WarmReader
 
@@ -613,3 +617,33 @@ def test_a_prefix_that_nobody_writes_is_a_slip(text: str, words: str) -> None:
 )
 def test_usual_prefixes_are_read(text: str) -> None:
     assert conversion(text, "x").factor > 0.0
+
+
+def test_units_that_are_read_at_once_are_read_as_pint_reads_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    at_once = {unit: conversion(unit, "here") for unit in si_units.SI_UNITS if unit != "C"}
+    monkeypatch.setattr(si_units, "READ_AT_ONCE", frozenset())
+    assert at_once == {unit: conversion(unit, "here") for unit in at_once}
+
+
+@pytest.mark.parametrize(("kind", "missing"), [("float64", False), ("float64", True), ("float32", True), ("int32", False), ("int64", True)])
+def test_columns_of_parquet_in_several_parts_and_with_gaps(tmp_path: Path, kind: str, missing: bool) -> None:
+    pa = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    numbers = [1.0, None, 3.0, 4.0, 5.0] if missing else [1.0, 2.0, 3.0, 4.0, 5.0]
+    table = pa.table({"t [s]": pa.array(np.arange(5.0)), "a [rad]": pa.array(numbers).cast(kind)})
+    parquet.write_table(table, tmp_path / "r.parquet", row_group_size=2)
+    values = read_record(tmp_path / "r.parquet", refuse=False).channels["a"].values
+    np.testing.assert_array_equal(values, [math.nan if item is None else item for item in numbers])
+
+
+def test_a_record_in_si_units_is_read_without_what_takes_long_to_load(tmp_path: Path) -> None:
+    """pint and, where they are installed, pandas and dask: 170 MB and a second."""
+    pa = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    parquet.write_table(pa.table({"t [s]": np.arange(9.0), "a [rad/s]": np.arange(9.0)}), tmp_path / "r.parquet")
+    program = (
+        "import sys; from hdrive_mbs.records.reading import read_record; read_record(sys.argv[1]);"
+        "print(sorted({'pint', 'pandas', 'dask'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", program, str(tmp_path / "r.parquet")], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
