@@ -144,7 +144,7 @@ def test_foreseen_errors_name_the_thing_and_the_way_out(
     [
         (("--solver", "runge-kutta-4", "--step", "1e-3"), ("beyond its limit of stability",)),
         # of which it lists the first ones: effects of other tests are no part of it there
-        (("--effect", "Witchcraft@motor"), ("Witchcraft", "CoulombStribeckFriction")),
+        (("--effect", "Witchcraft@motor"), ("Witchcraft", "BallPass")),
     ],
 )
 def test_a_foreseen_error_of_a_process_is_said_without_a_traceback(arguments: tuple[str, ...], words: tuple[str, ...]) -> None:
