@@ -123,6 +123,7 @@ def diagnose(
     if folder is not None:
         inputs = {"records": chosen, "bench": known, "candidates": tried, "trials": (trials, factors, known.groups, step, EVERY)}
         journal = Journal(folder, inputs)
+    give_back()  # what finding a step took, before processes begin
     with Team(workers or 1, journal, deadline) as team:
         evidence = gather(coarse, fine, factors, known.groups, tried, team, report)
         claim, best = _concluded(evidence)
