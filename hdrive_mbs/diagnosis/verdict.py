@@ -127,8 +127,8 @@ def judge(null_misfit: float, found: Sequence[Found], pairs: Sequence[Found] = (
 
 
 def _is_alike(item: Found, chosen: Found) -> bool:
-    """Whether a single cause leaves so little more than the chosen one that they cannot be told apart; but for one that imitates it at an
-    end of its range, for which the simpler one is the better explanation.
+    """Whether a single cause leaves so little more than the chosen one that they cannot be told apart; but for one that has the chosen one
+    as its limit and did no better with more numbers.
 
     A crack that the bending moment hardly moved left 1.7e-4 more than the keyway that was there, with log odds 38 lower (c02 of our own
     twenty-third rotor set, opened): it rests on that case.
@@ -137,7 +137,7 @@ def _is_alike(item: Found, chosen: Found) -> bool:
 
 
 def _imitates(item: Found, other: Found) -> bool:
-    """Whether a single cause acts as another one does where it stands at an end of its range (``Effect.limits``)."""
+    """Whether a single cause has another one at its place as a limit (``Effect.limits``)."""
     [mine, theirs] = [found.fitted.hypothesis.added[-1:] for found in (item, other)]
     if not (mine and theirs) or mine[0].at != theirs[0].at:
         return False

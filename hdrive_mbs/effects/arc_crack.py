@@ -19,13 +19,12 @@ class ArcCrack(SteepCrack):
 
     g = (tanh(s (cos b - w)) + tanh(s (1 + w)))/(tanh(s (1 - w)) + tanh(s (1 + w)))
 
-    which is 1 where the crack points down and 0 where it points up; with w = 0 it is the SteepCrack.  A shallow crack is open over less
-    than half a turn (w > 0); a deep one that the rest of the shaft holds apart is over more (w < 0).
+    which is 1 where the crack points down and 0 where it points up; with w = 0 it is the SteepCrack.  With w > 0 it is open over less than
+    half a turn, with w < 0 over more.
 
-    Source: the arcs over which a crack is open, closing and shut differ from half a turn and depend on its depth, M. A. Al-Shudeifat,
-    E. A. Butcher, J. Sound and Vibration 330 (2011) 526; the form with two numbers is ours and comes within 0.008 (root mean square
-    over a turn) of their powers cos^m(b/2), m = 3 to 6, and within 0.03 of straight ramps between two angles.  Leaves out what
-    BreathingCrack does.
+    Source: that the cosine is a weak model of how a crack breathes under the weight, also of shallow ones, M. A. Al-Shudeifat, E. A.
+    Butcher, J. Sound and Vibration 330 (2011) 526; the form with two numbers is ours.  It comes within 0.008 (root mean square over a
+    turn) of the powers cos^m(b/2), m = 3 to 6, and within 0.03 of straight ramps between two angles.  Leaves out what BreathingCrack does.
     """
 
     opens_at: float = parameter(

@@ -26,8 +26,8 @@ SI_UNITS = (
 )  # fmt: skip
 """Units that a channel can have inside."""
 READ_AT_ONCE = frozenset(SI_UNITS) - {"N s/m", "W", "N m/A"}
-"""Those that are what they say, without those whose powers an earlier one has: pint, which takes a second and up to 120 MB with what it
-loads, is not asked."""
+"""Those that are what they say, without those whose powers an earlier one has: pint, which takes longer to load than a record to read, is
+not asked."""
 
 AMBIGUOUS = {
     "g": "'g' is the gram; an acceleration in multiples of gravity is 'g_0', a mass 'gram'",

@@ -17,6 +17,7 @@ from hdrive_mbs.diagnosis.suspects import Suspect, suspects
 from hdrive_mbs.diagnosis.tasks import Found, Task
 from hdrive_mbs.diagnosis.verdict import judge
 from models import rotor_bench
+from tests.unit.diagnosis_cases import standing
 from tests.unit.rotor_bench_records import compiled, recorded
 
 BENCH = rotor_bench.bench()
@@ -34,19 +35,7 @@ KEYWAY = hm.Keyway(compliance=2e-8, position=0.4, angle=0.5)
 
 
 def fitted(hypothesis: Hypothesis, cost: float) -> Fitted:
-    return Fitted(
-        hypothesis,
-        hypothesis.start(),
-        residuals=np.zeros(0),
-        cost=cost,
-        curvature=np.eye(hypothesis.size),
-        converged=True,
-        steps=0,
-        chi_fit=2.0,
-        chi_held=2.0,
-        typical=2.0,
-        misfit_held=cost,
-    )
+    return replace(standing(hypothesis, np.eye(hypothesis.size)), cost=cost, chi_fit=2.0, chi_held=2.0)
 
 
 def found(effect: hm.CrackEffect, cost: float) -> Found:

@@ -637,7 +637,7 @@ def test_columns_of_parquet_in_several_parts_and_with_gaps(tmp_path: Path, kind:
 
 
 def test_a_record_in_si_units_is_read_without_what_takes_long_to_load(tmp_path: Path) -> None:
-    """pint and, where they are installed, pandas and dask: 170 MB and a second."""
+    """pint, and what it and pyarrow load besides where it is installed."""
     pa = pytest.importorskip("pyarrow")
     parquet = pytest.importorskip("pyarrow.parquet")
     parquet.write_table(pa.table({"t [s]": np.arange(9.0), "a [rad/s]": np.arange(9.0)}), tmp_path / "r.parquet")

@@ -70,7 +70,7 @@ def _numbers(table: Any, types: Any) -> np.ndarray:
         column = column.cast("int64")
     if not (types.is_integer(column.type) and column.null_count == 0):
         column = column.cast("float64")
-    # not by to_numpy, which loads pandas (50 MB) where it is installed
+    # not by to_numpy, which loads pandas where it is installed
     parts = [np.from_dlpack(chunk.fill_null(math.nan) if chunk.null_count else chunk) for chunk in column.chunks]
     return np.concatenate(parts) if parts else np.zeros(0)
 
