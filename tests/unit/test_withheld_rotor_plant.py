@@ -34,6 +34,7 @@ from benchmarks.withheld.plant.rotor_line.equations import (
     slope,
 )
 from benchmarks.withheld.plant.rotor_line.finer_detail import with_finer_detail
+from benchmarks.withheld.plant.rotor_line.laws import openness
 from benchmarks.withheld.plant.rotor_line.machine import NOMINAL, TOLERANCE, disturbed, machine
 from benchmarks.withheld.plant.rotor_line.planted import Planted, SensorFaults
 from benchmarks.withheld.plant.rotor_line.records import RECORDS, UnstableError, reference, run, static_deflection
@@ -206,7 +207,7 @@ def test_energy_is_kept_without_damping_with_unbalance_skew_bow_keyway_hardening
     causes.bearing[0, :2] = 3, 3e-5
     causes.bow[1] = 2e-4, -1e-4, 3e-4, 1e-4
     causes.bow[3] = -1e-4, 2e-4, 0.0, 5e-4
-    causes.crack[:] = 0, 1, 0.3, 1e-6, 0.0, 0.4, 1.0
+    causes.crack[:7] = 0, 1, 0.3, 1e-6, 0.0, 0.4, 1.0
     causes.hidden[:] = 1, 1, 2.0, 2.0 * 400**2, 2.0 * 600**2, 0.0, 0.5
     found = run(made, causes, "steps", gain=0.0, tolerance=2e-5, samples=1600)
     values = np.array([energy(made, causes, state) for state in found.states[::40]])
@@ -429,6 +430,18 @@ def test_noise_has_the_stated_size_with_and_without_memory(memory: float) -> Non
         assert np.var(misfit) == pytest.approx(expected, rel=4.5 * 2.2 * math.sqrt(2 / misfit.size)), name
         neighbours = float(np.mean(misfit[1:] * misfit[:-1])) / noise**2
         assert neighbours == pytest.approx(0.5 * memory, abs=0.1), name
+
+
+@pytest.mark.parametrize("gape", [-0.15, 0.0, 0.15])
+@pytest.mark.parametrize("depth", [0.2, 0.5, 0.8])
+def test_a_crack_is_open_where_its_front_lies_below_the_level_line(depth: float, gape: float) -> None:
+    """Counted point by point along the front of the turned crack; law 5."""
+    points = 20001
+    along = np.linspace(-1.0, 1.0, points) * math.sqrt(1.0 - (1.0 - depth) ** 2)
+    for angle in np.linspace(-math.pi, math.pi, 61):
+        heights = -(1.0 - depth) * math.cos(angle) + along * math.sin(angle)
+        share = float(np.mean(heights < gape))
+        assert openness(5, 0.0, float(angle), depth, gape) == pytest.approx(share, abs=2.0 / points)
 
 
 def test_an_unknown_noise_is_refused() -> None:

@@ -74,7 +74,7 @@ class Causes(NamedTuple):
 
     bow: FloatArray  # (4, 4): x, y, theta, psi of the free shaft in its own frame
     internal: FloatArray  # law, damping [s] or loss share, time constant
-    crack: FloatArray  # law, section, place/length, compliance, the other axis's compliance, angle, scale
+    crack: FloatArray  # law, section, place/length, compliance, the other axis's compliance, angle, scale, gape
     bearing: FloatArray  # (2, 6)
     cross: FloatArray  # (2, 4)
     whirl: FloatArray  # law, bearing, force, fraction, its slope, onset speed, wander, seed, growth, coupling (law 4: power)
@@ -97,7 +97,7 @@ class Causes(NamedTuple):
 def no_causes() -> Causes:
     """All absent."""
     return Causes(
-        bow=np.zeros((4, 4)), internal=np.zeros(3), crack=np.zeros(7), bearing=np.zeros((2, 6)), cross=np.zeros((2, 4)),
+        bow=np.zeros((4, 4)), internal=np.zeros(3), crack=np.zeros(8), bearing=np.zeros((2, 6)), cross=np.zeros((2, 4)),
         whirl=np.zeros(10), passing=np.zeros(10), support=np.zeros((2, 4)), drift=np.zeros((2, 3)), friction=np.zeros((2, 3)),
         quadratic=np.zeros(2), floor=np.zeros(8), hidden=np.zeros(7), rub=np.zeros(11), misalignment=np.zeros(10),
         ripple=np.zeros(11), pull=np.zeros(7), ball=np.zeros(6), windage=np.zeros(4), seal=np.zeros(4),
@@ -135,7 +135,7 @@ def _crack(row, length, bending, angle, s):
     c, d = math.cos(angle + row[5]), math.sin(angle + row[5])
     along, across = c * mx + d * my, -d * mx + c * my
     # positive moment along the crack's direction opens it; the weight bends the shaft so that w'' > 0 with y up
-    g = openness(int(row[0]), along, angle + row[5] - 0.5 * math.pi, row[6])
+    g = openness(int(row[0]), along, angle + row[5] - 0.5 * math.pi, row[6], row[7])
     r1 = row[3] * g / (1.0 + row[3] * g * kh) * along
     r2 = row[4] * g / (1.0 + row[4] * g * kh) * across
     rx, ry = c * r1 - d * r2, d * r1 + c * r2

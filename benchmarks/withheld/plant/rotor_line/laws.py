@@ -151,12 +151,13 @@ def misalignment_force(row, angle, torque, x, y):
 
 
 @compiled
-def openness(law, moment, angle, scale):
+def openness(law, moment, angle, scale, gape):
     """How far a crack is open, 0 to 1.
 
     0 always (an unsymmetric section); 1 by the bending moment across it, 1/2 (1 + tanh(M/scale)); 2 by the angle to the weight
     with a steepness: 1/2 (1 + tanh(scale cos)/tanh(scale)); 3 the moment clipped to a linear ramp of width scale; 4 by the angle to
-    the weight with a power: (1/2 (1 + cos))^scale.
+    the weight with a power: (1/2 (1 + cos))^scale; 5 the share of a straight crack front that lies below a level line, gape radii
+    above the middle of the section, where bending turns from pull to pressure; scale is the crack's depth in radii.
     """
     if law == 0:
         return 1.0
@@ -166,6 +167,11 @@ def openness(law, moment, angle, scale):
         return 0.5 * (1.0 + math.tanh(scale * math.cos(angle)) / math.tanh(scale))
     if law == 4:
         return (0.5 * (1.0 + math.cos(angle))) ** scale
+    if law == 5:
+        # points of the front: (1 - scale) along the crack's direction, t half-lengths along the front, t = -1 to 1
+        below = gape + (1.0 - scale) * math.cos(angle)
+        half = math.sqrt(scale * (2.0 - scale)) * abs(math.sin(angle))
+        return min(max(0.5 * (1.0 + below / max(half, 1e-9)), 0.0), 1.0)
     return min(max(0.5 + 0.5 * moment / scale, 0.0), 1.0)
 
 

@@ -74,13 +74,14 @@ def misalignment(bench: Planted, place: str, strength: float, rng: np.random.Gen
 
 
 def crack(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:
-    """A transverse crack beside rotor 1 that breathes; the laws are in laws.openness (4 since the sixth set, 2 before)."""
-    law, section = one_of(rng, 1, 4, 3), one_of(rng, 0, 1)
+    """A transverse crack beside rotor 1 that breathes; the laws are in laws.openness (5 since set 25, 4 since set 6, 2 before)."""
+    law, section = one_of(rng, 1, 5, 3), one_of(rng, 0, 1)
     where = rng.uniform(0.6, 0.95) if section == 0 else rng.uniform(0.05, 0.4)
     compliance = grown(strength, 2.5e-9, 1e-6)
-    scale = {1: rng.uniform(10.0, 40.0), 4: rng.uniform(0.5, 3.0), 3: rng.uniform(5.0, 25.0)}[law]
-    bench.causes.crack[:] = law, section, where, compliance, rng.uniform(0.1, 0.4) * compliance, phase(rng), scale
-    bench.effect.update(crack=compliance, crack_law=law, section=section, crack_place=where, crack_scale=scale)
+    scale = {1: rng.uniform(10.0, 40.0), 5: rng.uniform(0.2, 0.8), 3: rng.uniform(5.0, 25.0)}[law]
+    gape = rng.uniform(-0.15, 0.15)
+    bench.causes.crack[:] = law, section, where, compliance, rng.uniform(0.1, 0.4) * compliance, phase(rng), scale, gape
+    bench.effect.update(crack=compliance, crack_law=law, section=section, crack_place=where, crack_scale=scale, crack_gape=gape)
 
 
 def rub(bench: Planted, place: str, strength: float, rng: np.random.Generator) -> None:

@@ -88,5 +88,5 @@ def unsymmetric_shaft(bench: Planted, place: str, strength: float, rng: np.rando
     section = one_of(rng, 0, 1)
     where = rng.uniform(0.6, 0.95) if section == 0 else rng.uniform(0.05, 0.4)
     compliance = grown(strength, 2e-9, 5e-7)
-    bench.causes.crack[:] = 0, section, where, compliance, 0.0, phase(rng), 1.0
+    bench.causes.crack[:7] = 0, section, where, compliance, 0.0, phase(rng), 1.0
     bench.effect.update(keyway=compliance, section=section, key_place=where)
