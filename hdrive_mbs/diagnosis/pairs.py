@@ -1,4 +1,4 @@
-"""Two causes at once: the best single one with others, exchanged for its rivals, and each of the two without the other."""
+"""Two causes at once: the first exchanged for its rivals, each at other places, and each of the two without the other."""
 
 from __future__ import annotations
 
@@ -30,31 +30,14 @@ from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.quantities import is_needed
 
-TOGETHER = 5
-"""Joint steps of two causes that are put together."""
+SWAPPED = 5
+"""Joint steps of a pair with another first cause."""
 MOVED, GOING = 14, 4
 """Joint steps of a pair with a cause at another place or another law, and how many of these pairs take them, the best after the first
 steps.  A drag in place of what had stood for it beside friction passed the other pair in its tenth (c16 of our own fourteenth drive set,
 labels open)."""
 CONTENDERS, NEARLY = 3, 0.01
 """Pairs that are fitted to the end at most, and share of what a second cause gains by which they may lie behind the best until then."""
-
-
-def joined(team: Team, simulator: Simulator, first: Found, others: Sequence[Found]) -> list[Found]:
-    """The best single cause together with each of the others, both from the values that they were found with alone."""
-    own, _ = first.fitted.hypothesis.rescaled(first.fitted.z)
-    tasks = []
-    suspects_of = []
-    for item in others:
-        theirs, _ = item.fitted.hypothesis.rescaled(item.fitted.z)
-        if item.suspect.label == first.suspect.label or not (own.added or own.loose):
-            continue
-        base = Hypothesis(own.factors, own.added, {**own.loose, **theirs.loose})
-        hypothesis = Hypothesis(own.factors, (*own.added, *(renamed(added, base) for added in theirs.added)), base.loose)
-        start = hypothesis.start(first.fitted.hypothesis.nominal_part(first.fitted.z))
-        tasks.append(Task(hypothesis, start, None, TOGETHER, FINE))
-        suspects_of.append(item.suspect)
-    return those_that_ran(suspects_of, team.map(run_task, simulator, tasks))
 
 
 def swapped(team: Team, simulator: Simulator, pair: Found, first: Label, others: Sequence[Found]) -> list[Found]:
@@ -76,7 +59,7 @@ def swapped(team: Team, simulator: Simulator, pair: Found, first: Label, others:
         base = Hypothesis(own.factors, own.added, {**own.loose, **second.loose})
         hypothesis = Hypothesis(own.factors, (*own.added, renamed(second.added[-1], base)), base.loose)
         start = hypothesis.start(pair.fitted.hypothesis.nominal_part(pair.fitted.z))
-        tasks.append(Task(hypothesis, start, None, TOGETHER, FINE, beat=rivalling(pair.fitted)))
+        tasks.append(Task(hypothesis, start, None, SWAPPED, FINE, beat=rivalling(pair.fitted)))
         names.append(pair.suspect)
     return those_that_ran(names, team.map(run_task, simulator, tasks))
 

@@ -12,8 +12,9 @@ import numpy as np
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import enough
 from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.joined import joined, settles
 from hdrive_mbs.diagnosis.pair_laws import with_other_laws
-from hdrive_mbs.diagnosis.pairs import alone, contenders, joined, moved, swapped
+from hdrive_mbs.diagnosis.pairs import alone, contenders, moved, swapped
 from hdrive_mbs.diagnosis.recast import recast
 from hdrive_mbs.diagnosis.search import Depth, Search, search
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -21,7 +22,7 @@ from hdrive_mbs.diagnosis.stages import Report, under
 from hdrive_mbs.diagnosis.suspects import Suspect, suspects
 from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.team import Team
-from hdrive_mbs.diagnosis.verdict import LITTLE, left, of_one_family, takes_most
+from hdrive_mbs.diagnosis.verdict import LITTLE, left, takes_most
 
 LEFT = LITTLE
 """Mean square left by the best single cause, on what its fit saw and did not see, that is worth all that is done for a second one;
@@ -45,8 +46,6 @@ GLANCE = replace(SHALLOW, held=False)
 """Likewise beside a first one that leaves little: what is missing has bent little then."""
 LABELS = 3
 """Single causes that stand in for the first one of the best pair."""
-JOINED = 3
-"""Other single causes that the best one is joined with, besides the best at the place of the gap."""
 
 
 def wants_second(null: Fitted, first: Found, samples: int) -> bool:
@@ -87,13 +86,13 @@ def second_cause(
         return None, (), ()
     if team.deadline.passed("a second cause"):
         return None, (), ()
-    rivals = {item.suspect.label: item for item in (*single.labels[1 : JOINED + 1], *there[:1])}
+    rivals = {item.suspect.label: item for item in (*single.labels[1:], *there[:1])}
     together = list(known) or joined(team, coarse, first, tuple(rivals.values()))
     pair = None
     much = left(first.fitted) > enough(null, LEFT)
     little = enough(null, LEFT) if much else slight(null, samples)
-    near = any(left(item.fitted) < little and not of_one_family(item) for item in together)
-    if not near and not (together and team.deadline.passed("a second cause among everything")):
+    settled = any(settles(item, first, little) for item in together)
+    if not settled and not (together and team.deadline.passed("a second cause among everything")):
         depth = SHALLOW if much else GLANCE
         pair = search(team, coarse, first.fitted, groups, tried, depth=depth, report=partial(under, said, "second cause"))
         together = [*pair.found, *together]
@@ -111,6 +110,8 @@ def second_cause(
     known = [*together, *exchanged]
     found = contenders(team, coarse, known, first)
     everything = suspects(null.hypothesis, groups, tried)
+    told = found[0].fitted.hypothesis.labels
+    found = _told_by_other_laws(team, coarse, found, first, everything)
     others = alone(team, coarse, found[0], everything, first)
     gained = first.fitted.cost - found[0].fitted.cost
     again = left(found[0].fitted) > enough(null, LEFT) and gained > TAKEN * max(first.fitted.cost - 0.5 * samples, 0.0)
@@ -119,6 +120,8 @@ def second_cause(
         for item in (item for item in others if item.suspect.label == found[0].suspect.label):
             more = search(team, coarse, item.fitted, groups, tried, depth=SHALLOW, report=partial(under, said, "first cause again"))
             found = contenders(team, coarse, [*found, *more.found], first)
+        if found[0].fitted.hypothesis.labels != told:
+            found = _told_by_other_laws(team, coarse, found, first, everything)
     found = _exchanged_in_place(team, coarse, found, first, everything)
     elsewhere = [] if team.deadline.passed("causes of the pair at other places") else moved(team, coarse, found, tried)
     pairs = contenders(team, coarse, [*found, *elsewhere], first)
@@ -126,18 +129,25 @@ def second_cause(
     return pair, pairs, tuple(others)
 
 
+def _told_by_other_laws(
+    team: Team, coarse: Simulator, found: tuple[Found, ...], first: Found, everything: Sequence[Suspect]
+) -> tuple[Found, ...]:
+    """Where the best pair leaves something, however strong its causes are: with other laws of them.
+
+    Before anything else is looked for: a search beside a wrong law takes longer than all laws, and finds what stands for the right one.
+    """
+    if left(found[0].fitted) <= LEFT or team.deadline.passed("other laws at the places of the pair"):
+        return found
+    return contenders(team, coarse, [*found, *with_other_laws(team, coarse, found, everything)], first)
+
+
 def _exchanged_in_place(
     team: Team, coarse: Simulator, found: tuple[Found, ...], first: Found, everything: Sequence[Suspect]
 ) -> tuple[Found, ...]:
-    """Where the best pair leaves something, however strong its causes are: with other laws of them, with other causes at their places, and
-    with other laws of those."""
-    told = None
-    for what, others in (("other laws", with_other_laws), ("other causes", recast), ("other laws", with_other_laws)):
-        causes = found[0].fitted.hypothesis.labels
-        if others is with_other_laws and causes == told:
-            continue
-        if left(found[0].fitted) <= LEFT or team.deadline.passed(f"{what} at the places of the pair"):
-            break
-        told = causes if others is with_other_laws else told
-        found = contenders(team, coarse, [*found, *others(team, coarse, found, everything)], first)
-    return found
+    """Where the best pair leaves something, however strong its causes are: with other causes at their places, and with other laws of
+    those."""
+    told = found[0].fitted.hypothesis.labels
+    if left(found[0].fitted) <= LEFT or team.deadline.passed("other causes at the places of the pair"):
+        return found
+    found = contenders(team, coarse, [*found, *recast(team, coarse, found, everything)], first)
+    return found if found[0].fitted.hypothesis.labels == told else _told_by_other_laws(team, coarse, found, first, everything)

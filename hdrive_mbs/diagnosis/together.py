@@ -12,17 +12,16 @@ import numpy as np
 
 from hdrive_mbs.diagnosis.choosing import enough
 from hdrive_mbs.diagnosis.fit import Fitted
-from hdrive_mbs.diagnosis.pairs import joined
+from hdrive_mbs.diagnosis.joined import joined, settles
 from hdrive_mbs.diagnosis.search import Search
-from hdrive_mbs.diagnosis.second_cause import JOINED, LEFT, wants_second
+from hdrive_mbs.diagnosis.second_cause import LEFT, wants_second
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.team import Team
-from hdrive_mbs.diagnosis.verdict import left, of_one_family
 
 
 class Together:
-    """The best single cause of a search put together with those that come next, as far as one of these pairs explains all.
+    """The best single cause of a search put together with others, as far as one of these pairs explains all.
 
     null : the nominal model, refitted, to which the causes are added
     """
@@ -33,12 +32,12 @@ class Together:
         self._pairs: tuple[Found, ...] = ()
 
     def explain(self, single: Search) -> bool:
-        """Whether a pair that is not one phenomenon twice leaves next to nothing where no single cause does; the pairs are kept then."""
+        """Whether a pair settles it where no single cause does; the pairs are kept then."""
         labels = single.labels
         if not labels or not wants_second(self._null, labels[0], int(np.count_nonzero(self._simulator.fit))):
             return False
-        pairs = joined(self._team, self._simulator, labels[0], labels[1 : JOINED + 1])
-        if not any(left(pair.fitted) < enough(self._null, LEFT) and not of_one_family(pair) for pair in pairs):
+        pairs = joined(self._team, self._simulator, labels[0], labels[1:])
+        if not any(settles(pair, labels[0], enough(self._null, LEFT)) for pair in pairs):
             return False
         self._first, self._pairs = labels[0].fitted, tuple(pairs)
         return True

@@ -54,6 +54,8 @@ def found(plain: Fitted, leaves: float, *added: Added) -> Found:
         (5.0, 1.0, True),
         (5.0, 1.13, True),  # laws that are nearly right leave 100^0.03 = 1.148
         (5.0, 1.2, False),
+        (40.0, 1.7, True),  # less than a fiftieth of what the first leaves above noise
+        (40.0, 1.9, False),
         (1.01, 1.0, False),  # the first leaves nothing
     ],
 )
