@@ -188,6 +188,7 @@ def bearings(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], 
     return json.loads((folder / "results.json").read_text("utf-8")), (folder / "results.md").read_text("utf-8"), folder
 
 
+@pytest.mark.slow
 def test_bearings_gives_finite_numbers_for_every_model(bearings: tuple[dict[str, Any], str, Path]) -> None:
     results, text, folder = bearings
     models = results["cases"]["M-REF"]["models"]
@@ -217,12 +218,14 @@ def test_bearings_gives_finite_numbers_for_every_model(bearings: tuple[dict[str,
     assert "## Claims of the paper" in text
 
 
+@pytest.mark.slow
 def test_the_converged_run_up_is_that_of_the_independent_model(bearings: tuple[dict[str, Any], str, Path]) -> None:
     # the peak of M-REF lies before the end of the quick run; the kept values are known to 1.1e-6/15 (their ``uncertainty``)
     assert bearings[0]["scipy"]["M-REF"]["amplitude"] < 1e-6
     assert bearings[0]["scipy"]["M-REF"]["speed"] < 1e-6
 
 
+@pytest.mark.slow
 def test_the_two_solvers_of_a_model_agree_where_they_are_converged(bearings: tuple[dict[str, Any], str, Path]) -> None:
     # extrapolation from h = 1e-4 and 2e-4 leaves terms of h^4: (w h)^4 = 4e-5 of 60 rad of phase at 2e-4 and 400 rad/s
     for name, model in bearings[0]["cases"]["M-REF"]["models"].items():
@@ -233,6 +236,7 @@ def test_the_two_solvers_of_a_model_agree_where_they_are_converged(bearings: tup
         assert coarse / fine == pytest.approx(4.0, rel=0.1), name  # order 2
 
 
+@pytest.mark.slow
 def test_the_improved_bearing_keeps_to_the_full_one_and_the_simplified_one_does_not(bearings: tuple[dict[str, Any], str, Path]) -> None:
     models = bearings[0]["cases"]["M-REF"]["models"]
     # aims of the improved model; the limits for the other one are where the paper would call it accurate

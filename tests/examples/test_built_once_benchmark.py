@@ -10,6 +10,7 @@ import pytest
 from benchmarks.built_once import __main__ as command
 
 
+@pytest.mark.slow
 def test_lines_from_templates_have_the_constants_of_those_that_are_built(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert command.main(["--quick", "--out", str(tmp_path)]) == 0
     rows = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["rows"]

@@ -10,6 +10,7 @@ import pytest
 from benchmarks.differences import __main__ as command
 
 
+@pytest.mark.slow
 def test_fits_with_short_differences_leave_no_more_than_long_ones(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert command.main(["--quick", "--out", str(tmp_path)]) == 0
     found = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))

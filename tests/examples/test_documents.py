@@ -23,7 +23,7 @@ def blocks(path: Path) -> list[str]:
 
 
 EXAMPLES = [
-    pytest.param(code, id=f"{path.name}-{number}")
+    pytest.param(code, id=f"{path.name}-{number}", marks=() if path.name == "README.md" else pytest.mark.slow)
     for path in DOCUMENTS
     if path not in TUTORIALS
     for number, code in enumerate(blocks(path), start=1)

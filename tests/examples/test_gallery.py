@@ -69,6 +69,7 @@ def of_tutorial(name: str) -> str:
     return found.group(1) if found else ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in NAMES if not of_tutorial(name)])
 def test_a_script_makes_the_committed_picture_with_named_axes(name: str) -> None:
     """Those of tutorials: test_tutorials.py."""

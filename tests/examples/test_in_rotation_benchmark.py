@@ -11,6 +11,7 @@ from benchmarks.in_rotation.report import report
 from benchmarks.in_rotation.ways import ways
 
 
+@pytest.mark.slow
 def test_the_elimination_leaves_what_the_fitted_state_leaves_and_run_ins_alone_more() -> None:
     true = fan().with_effect(PLANTED, at=AT)
     rows = ways(true, log(true), 1)

@@ -30,6 +30,7 @@ def module(path: Path) -> ModuleType:
     return loaded
 
 
+@pytest.mark.slow
 def test_the_site_builds_without_a_warning(tmp_path: Path) -> None:
     pytest.importorskip("sphinx", reason='needs the extra: pip install -e ".[docs]"')
     pytest.importorskip("myst_parser", reason='needs the extra: pip install -e ".[docs]"')

@@ -6,9 +6,12 @@ import importlib.util
 import json
 from pathlib import Path
 
+import pytest
+
 from benchmarks.sweep import __main__ as command
 
 
+@pytest.mark.slow
 def test_every_way_of_a_sweep_gives_the_same_table(tmp_path: Path) -> None:
     assert command.main(["--quick", "--out", str(tmp_path)]) == 0  # 1 when they differ
     found = json.loads((tmp_path / "results.json").read_text("utf-8"))

@@ -18,6 +18,7 @@ from tests.examples.test_gallery import NAMES, check_picture, of_tutorial
 from tests.patience import PATIENCE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", TUTORIALS, ids=lambda path: path.name)
 def test_a_tutorial_prints_what_it_quotes_and_makes_its_pictures(path: Path, tmp_path: Path) -> None:
     """A block of text that follows a block of code is what that code prints; a line ``...`` stands for lines left out."""

@@ -174,6 +174,7 @@ class GreaseOfAnimationTest(hm.TorqueEffect):
 """
 
 
+@pytest.mark.slow
 def test_a_run_with_an_effect_of_ones_own_is_animated_with_its_file(tmp_path: Path) -> None:
     """Each command in a process of its own, which does not know the class."""
     own, model, out = tmp_path / "grease.py", Path(two_rotor_line.__file__), tmp_path / "line.gif"

@@ -42,6 +42,7 @@ def here() -> dict[str, Any]:
     return {"maps": maps(SMALL, Where(), lambda: None), "damping": damping_places(SMALL, Where(), lambda: None)}
 
 
+@pytest.mark.slow
 def test_maps_on_processes_are_those_of_this_process_and_are_kept(here: dict[str, Any], tmp_path: Path) -> None:
     seen = []
     far = Where(workers=2, kept=tmp_path)

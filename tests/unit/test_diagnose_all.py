@@ -137,6 +137,7 @@ def test_a_failing_case_is_told_with_its_records_and_the_same_command_goes_on_on
     assert not (out / "failures.txt").exists()
 
 
+@pytest.mark.slow
 def test_a_changed_record_or_bench_makes_the_case_anew(bench: Path, tmp_path: Path) -> None:
     words = (str(bench), "--records", str(cases(tmp_path / "set", "a")), "--out", str(tmp_path / "out"), "--workers", "1")
     assert invoke(*words).exit_code == 0
@@ -200,6 +201,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
 def test_an_interrupted_command_keeps_finished_cases_and_the_same_one_goes_on(bench: Path, tmp_path: Path, how: signal.Signals) -> None:
     written(tmp_path, "quick_bench", 0.5)
@@ -261,6 +263,7 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         running.wait(timeout=120)
 
 
+@pytest.mark.slow
 def test_a_killed_worker_of_a_cluster_loses_no_case_and_no_fit(cluster: str, bench: Path, tmp_path: Path) -> None:
     written(tmp_path, "quick_bench", 1.0)
     killed: list[str] = []

@@ -65,6 +65,7 @@ def test_an_order_stands_in_the_map_before_and_not_after() -> None:
     assert first.after[:, near].max() < 0.1 * peak
 
 
+@pytest.mark.slow
 def test_the_page_holds_these_pictures_with_words_for_those_who_do_not_see_them() -> None:
     alts = [re.findall(r'<img[^>]* alt="([^"]*)"', page) for page in pages()]
     assert sum(text.startswith("Loop of torque against twist of gear during record") for text in alts[0]) == len(INPUTS)

@@ -236,6 +236,7 @@ def pages(sample: str) -> Page:
     return page_of(dataclasses.replace(answer, traces=answer.traces[:2]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sample", ["effect", "none", "without_numbers", "without_pictures"])
 def test_page_needs_nothing_from_outside_and_names_every_picture(sample: str) -> None:
     page = pages(sample)

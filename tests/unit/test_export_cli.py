@@ -30,6 +30,7 @@ COMMANDS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("model", "words"), COMMANDS, ids=[f"{words[0]}_{model.__name__}" for model, words in COMMANDS])
 def test_the_table_of_a_command_has_the_columns_and_the_checksum_of_its_saved_result(
     model: Any, words: tuple[str, ...], tmp_path: Path

@@ -40,6 +40,7 @@ def record(effect: hm.HiddenModeSupport) -> Record:
     return Record(name="run_up", times=times, channels={n: Measurement(name=n, unit="m", values=v) for n, v in values.items()})
 
 
+@pytest.mark.slow
 def test_a_mass_that_hangs_askew_is_found_with_both_frequencies_and_its_direction() -> None:
     bench = hm.Bench(
         scene=scene(),

@@ -379,6 +379,7 @@ def test_a_diagnosis_looks_for_the_place_from_the_model_as_given_on_rotor_lines_
         assert last.place == f"about the model {wanted}"
 
 
+@pytest.mark.slow
 def test_a_flaw_of_an_inner_race_is_named_with_its_order_from_the_force_at_its_bearing() -> None:
     """Sidebands one order apart, both ways round, and a mean; another law than the one that is tried."""
     order = 4.8586

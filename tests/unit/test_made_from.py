@@ -22,6 +22,7 @@ from models import harmonic_drive_train, two_rotor_line
 from tests.unit import campaign_jobs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("model", "words"),
     [

@@ -150,6 +150,7 @@ PICTURES: dict[str, Callable[[], Axes]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PICTURES)
 def test_no_name_lies_on_a_curve_a_critical_speed_or_another_name(name: str) -> None:
     ax = PICTURES[name]()

@@ -111,6 +111,7 @@ def test_a_line_within_its_tolerance_is_blamed_on_nothing() -> None:
     assert found.gap.nominal.value > 3.0
 
 
+@pytest.mark.slow
 def test_an_accelerometer_has_its_unit_in_the_pictures() -> None:
     """Its channel is a rate, which the network does not list."""
     plant = scene().with_effect(RotorUnbalance(unbalance=3e-4, phase=1.2), at="disc")

@@ -52,6 +52,7 @@ def short_of(found: Diagnosis) -> list[str]:
     return [text for text in found.warnings if "The search stopped after" in text]
 
 
+@pytest.mark.slow
 def test_the_second_of_two_causes_is_left_out_and_the_answer_says_so() -> None:
     given = records(*two())
     short, long = (diagnose(bench(), given, candidates=KINDS, pictures=False, search_seconds=limit) for limit in (1e-6, 600.0))
@@ -63,6 +64,7 @@ def test_the_second_of_two_causes_is_left_out_and_the_answer_says_so() -> None:
     assert short.gap.effect.value > 1.05  # what is left is told, not hidden
 
 
+@pytest.mark.slow
 def test_what_needs_no_further_search_is_as_good_as_without_a_limit() -> None:
     given = records(two()[1])
     short, long = (diagnose(bench(), given, candidates=KINDS, pictures=False, search_seconds=limit) for limit in (1e-6, None))

@@ -20,6 +20,7 @@ ROOT = Path(__file__).parents[2]
 NAMES = tuple(f"drive-c{number}" for number in range(8))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
 def test_an_interrupted_run_keeps_its_answers_and_the_next_one_answers_the_rest(tmp_path: Path, how: signal.Signals) -> None:
     cases, out = written_cases(tmp_path / "set", *NAMES), tmp_path / "answers.json"

@@ -213,6 +213,7 @@ def test_motion_agrees_with_an_implicit_solver_and_equations_written_out_again()
     assert np.abs(found.y[6] - moved.states[::50, line.LOAD]).max() < 0.01 * 1.5e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["friction_load", "hysteresis_flexspline", "coupling_backlash", "kinematic_error", "brake_lag"])
 def test_tighter_tolerance_changes_the_channels_by_less_than_noise(name: str) -> None:
     """Against a hundredth of the tolerance; 0.1 noise units add one part in a hundred thousand to chi-square."""
@@ -408,6 +409,7 @@ def test_records_of_a_case_hold_the_stated_noise() -> None:
     assert np.abs(measured["motor_angle"] - channels["motor_angle"]).max() <= np.pi / 16384 + 1e-12
 
 
+@pytest.mark.slow
 def test_finer_detail_of_nulls_stays_invisible_and_faint_causes_stay_visible() -> None:
     """The same yardstick that no labelled effect may fall below holds for the detail of nulls, at its widest."""
     yardstick = Yardstick(NOMINAL)

@@ -62,6 +62,7 @@ LIMIT = 1e-4
 journal at rest in the middle of its bearing has a force that is not smooth."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("housed", [name for name, situation in SITUATIONS.items() if situation.housed or situation.merged is None])
 @pytest.mark.parametrize("name", LAWS)
 def test_rotor_on_each_bearing_follows_the_equations_in_scipy(name: str, housed: str) -> None:
