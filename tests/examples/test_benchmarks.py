@@ -66,6 +66,7 @@ def laws(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], str,
 # -- speed -----------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_speed_gives_finite_numbers_for_every_method(speed: tuple[dict[str, Any], str, Path]) -> None:
     results, text, folder = speed
     methods = results["cases"]["train"]["methods"]
@@ -93,6 +94,7 @@ def test_speed_gives_finite_numbers_for_every_method(speed: tuple[dict[str, Any]
     assert pictures(folder) == {"error_against_time.png"}
 
 
+@pytest.mark.slow
 def test_every_method_of_the_speed_benchmark_solves_the_same_train(speed: tuple[dict[str, Any], str, Path]) -> None:
     # the right-hand side by hand and the engine's equations have nothing in common but the scene:
     # a wrong term in either would leave an error that no finer setting lowers
@@ -122,6 +124,7 @@ def test_time_at_an_error_is_that_of_the_fastest_run_where_none_near_it_is_worse
 # -- stiffness laws ----------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_stiffness_laws_gives_finite_numbers_for_every_part(laws: tuple[dict[str, Any], str, Path]) -> None:
     results, text, folder = laws
     assert {"machine", "durations", "table_1", "shapes", "pulses", "output_shaft", "reduction", "claims"} == set(results) - {"repeats"}
@@ -142,6 +145,7 @@ def test_stiffness_laws_gives_finite_numbers_for_every_part(laws: tuple[dict[str
     assert "## Claims" in text
 
 
+@pytest.mark.slow
 def test_every_claim_of_the_paper_has_numbers_and_a_verdict(laws: tuple[dict[str, Any], str, Path]) -> None:
     claims = laws[0]["claims"]
     places = {claim["where"] for claim in claims}
@@ -151,6 +155,7 @@ def test_every_claim_of_the_paper_has_numbers_and_a_verdict(laws: tuple[dict[str
         assert claim["verdict"], claim
 
 
+@pytest.mark.slow
 def test_table_1_holds_and_the_printed_9_and_10_do_not_give_it(laws: tuple[dict[str, Any], str, Path]) -> None:
     rows = {row["equation"]: row for row in laws[0]["table_1"]["rows"]}
     assert all(f"{row['corrected']:.2e}" == f"{row['table']:.2e}" for row in rows.values())
@@ -159,6 +164,7 @@ def test_table_1_holds_and_the_printed_9_and_10_do_not_give_it(laws: tuple[dict[
     assert f"{rows['(10)']['as_printed']:.2e}" == "7.72e-03"
 
 
+@pytest.mark.slow
 def test_contacts_of_the_jump_law_get_denser_as_derived(laws: tuple[dict[str, Any], str, Path]) -> None:
     contacts = laws[0]["pulses"]["contacts"]
     # (B_FS + B_wwy)/3J with J = 4e-4 + 2.465e-5/2; the derivation drops terms of order b T/J, which is 0.2 for the first
@@ -167,6 +173,7 @@ def test_contacts_of_the_jump_law_get_denser_as_derived(laws: tuple[dict[str, An
     assert contacts["growth_rate"] == pytest.approx(contacts["growth_rate_theory"], rel=0.2)
 
 
+@pytest.mark.slow
 def test_inside_the_gap_torque_only_the_jump_laws_pulse(laws: tuple[dict[str, Any], str, Path]) -> None:
     runs = laws[0]["pulses"]["runs"]
     for law in ("catalogue", "cubic", "continuous", "jump, drawn out"):

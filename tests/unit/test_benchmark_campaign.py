@@ -54,6 +54,7 @@ def test_maps_on_processes_are_those_of_this_process_and_are_kept(here: dict[str
     assert same(again, here["maps"])
 
 
+@pytest.mark.slow
 def test_maps_on_a_cluster_are_those_of_this_process(here: dict[str, Any], cluster: str) -> None:  # noqa: F811
     assert same(maps(SMALL, Where(scheduler=cluster), lambda: None), here["maps"])
 

@@ -58,6 +58,7 @@ def numbers(scene: hm.Scene, channels: list[str]) -> tuple[object, ...]:
     return program.structure, program.constants.tobytes(), tables, program.inputs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BENCHES)
 def test_lines_from_what_is_kept_are_those_built_anew_to_the_last_bit(name: str) -> None:
     channels = BENCHES[name][2]

@@ -115,6 +115,7 @@ def test_every_case_gets_its_report_and_the_table_a_line(bench: Path, tmp_path: 
     assert (out / "diagnoses.csv").read_text().splitlines()[1].startswith("a,")
 
 
+@pytest.mark.slow
 def test_a_failing_case_is_told_with_its_records_and_the_same_command_goes_on_once_it_is_mended(bench: Path, tmp_path: Path) -> None:
     folder, out = cases(tmp_path / "set", "a", "b", "c"), tmp_path / "out"
     (folder / "b" / "run_b.csv").write_text("time [s],motor_angle [rad]\n0.0,1.0\n0.0,2.0\n")
@@ -168,6 +169,7 @@ def test_cases_are_folders_files_and_folders_of_folders_with_short_names(tmp_pat
         cases_in([tmp_path / "nowhere"])
 
 
+@pytest.mark.slow
 def test_a_killed_process_of_this_machine_loses_no_case_and_no_fit(bench: Path, tmp_path: Path) -> None:
     written(tmp_path, "quick_bench", 0.5)
     killed: list[str] = []
@@ -289,6 +291,7 @@ def test_a_killed_worker_of_a_cluster_loses_no_case_and_no_fit(cluster: str, ben
         assert read_report_json(out / name / "diagnosis.json")["verdict"] == "effect"
 
 
+@pytest.mark.slow
 def test_a_worker_of_a_cluster_takes_the_new_text_of_a_changed_bench(cluster: str, bench: Path, tmp_path: Path) -> None:
     names = ("a", "b", "c", "d")
     words = ("--records", str(cases(tmp_path / "set", *names)), "--out", str(tmp_path / "out"), "--scheduler", cluster)

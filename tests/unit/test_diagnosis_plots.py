@@ -248,6 +248,7 @@ def test_page_needs_nothing_from_outside_and_names_every_picture(sample: str) ->
     assert page.headings[0].startswith("Diagnosis of 'drive bench'")
 
 
+@pytest.mark.slow
 def test_words_of_a_picture_name_the_models_that_are_drawn_and_no_others() -> None:
     """Of a claim all three; where none is claimed, nothing is drawn with a cause, nor after."""
     told = {sample: [str(picture["alt"]) for picture in pages(sample).pictures] for sample in ("effect", "none")}

@@ -231,6 +231,7 @@ def test_content_counts_for_a_digest_and_not_how_it_came_about() -> None:
     assert digest({"a": 1}, {"b": 2}) != digest({"a": 1, "b": 2})
 
 
+@pytest.mark.slow
 def test_two_processes_give_the_answer_of_one_and_read_an_effect_from_its_file(tmp_path: Path, whole: Diagnosis) -> None:
     file = tmp_path / "my_effect.py"
     file.write_text(OWN)
@@ -443,6 +444,7 @@ def fail_or_wait(shared: Path, item: int) -> int:
     return int(wait_for(shared, item))
 
 
+@pytest.mark.slow
 def test_after_an_error_a_team_goes_on_and_nobody_gets_an_answer_to_an_older_question(team: Team, tmp_path: Path) -> None:
     assert team.map(double, 2, [1, 2]) == [2, 4]  # both processes are there
     for _ in range(3):

@@ -30,6 +30,7 @@ def one_of_each(scene: hm.Scene) -> list[Candidate]:
     return list(found.values())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BENCHES)
 def test_a_law_has_one_structure_at_points_near_each_other(name: str) -> None:
     """With the numbers of a bench and of the law a little off in all digits; none of them passes zero."""

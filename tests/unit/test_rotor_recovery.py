@@ -102,6 +102,7 @@ def test_the_place_of_its_force_is_the_disc_or_what_turns_with_it_by_symmetry() 
     assert unbalanced().loops == ()  # torque over twist says nothing of a force across the axis
 
 
+@pytest.mark.slow
 def test_a_line_within_its_tolerance_is_blamed_on_nothing() -> None:
     found = found_in()
     assert found.verdict == "none"
@@ -127,6 +128,7 @@ def test_an_accelerometer_has_its_unit_in_the_pictures() -> None:
     assert found.order_maps
 
 
+@pytest.mark.slow
 def test_a_wrong_gain_of_a_probe_is_a_faulty_sensor_and_the_other_probe_is_named_as_tied() -> None:
     """The whirl is round: 5 % too much in x is 5 % too little in y of a larger eccentricity, which is known to 10 %."""
     found = found_in((ProbeGain(error=0.05), "probe_x"))

@@ -174,6 +174,7 @@ def shaken(made: Specimen, *, seconds: float = 0.5, tolerance: float = TOLERANCE
     return time, brake, follow(made.plant, made.tables, reference, brake, SHORT, tolerance=tolerance)
 
 
+@pytest.mark.slow
 def test_motion_agrees_with_an_implicit_solver_and_equations_written_out_again() -> None:
     """The nominal bench by scipy's Radau on equations written here from the data sheet; 0.01 noise units are allowed."""
     p = NOMINAL

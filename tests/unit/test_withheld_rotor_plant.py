@@ -108,6 +108,7 @@ def test_cases_of_the_other_maker_are_reproduced_to_their_noise(case: str) -> No
 # --- the integrator
 
 
+@pytest.mark.slow
 def test_a_hundred_times_finer_integration_stays_below_a_twentieth_of_the_noise() -> None:
     """With three contacts in the bump record, the hardest: a damper jumps in at each touch. Without contacts it is 1e-3 of the noise."""
     bench = Planted(values=dict(NOMINAL))
