@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from hdrive_mbs.diagnosis.ground import screen_from
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
-from hdrive_mbs.diagnosis.screening import Look, Screen
+from hdrive_mbs.diagnosis.screening import Screen
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, renamed
 from hdrive_mbs.diagnosis.tasks import FINE, Found, Task, run_task, those_that_ran
@@ -15,14 +15,15 @@ from hdrive_mbs.diagnosis.verdict import left, of_one_family
 
 JOINED = 3
 """Other single causes that the best one is joined with: those whose looks from its fit come out best.  What is missing beside a strong
-cause shows little without it: in the fits of 22 pairs of our own drive sets 17 to 23 and rotor sets 21 to 23, opened, the second cause was
-among the next three labels of the search for a single one in twelve, and the fifth to thirteenth label in the others."""
+cause shows little without it: of 22 pairs that were found in our own drive sets 17 to 23 and rotor sets 21 to 23, the second cause was
+among the next three labels of the search for a single one in twelve, and the fifth to thirteenth label in the others
+(tests/unit/test_pair_constants.py)."""
 CLEAR = 0.02
 """Share of what the best single cause leaves above noise: a pair that leaves less of it is not bettered by another second cause, only by
-other laws of its two.  In the same fits and those of rotor set 24, twelve of the right pairs left 0.017 at most and the others 0.023 and
-more.  Of pairs with a wrong cause two left less than 0.042: a play at the output shaft in place of the gear's lost motion (0.005; a search
-among everything took it as well) and an error of an encoder beside the kinematic error that was there alone (0.0002; each of the two
-is tried alone afterwards)."""
+other laws of its two.  In the same sets and rotor set 24, twelve second causes that were there left 0.0135 at most in a search and the
+others 0.0245 and more.  Of those that were not there two left less than 0.0376: a play at the output shaft in place of the gear's lost
+motion (0.0055; the search took it as well) and a kinematic error that was there alone, beside an error of an encoder (0.0002; each of the
+two is tried alone afterwards; tests/unit/test_pair_constants.py)."""
 TOGETHER = 5
 """Joint steps of two causes that are put together."""
 
@@ -41,7 +42,7 @@ def joined(team: Team, simulator: Simulator, first: Found, others: Sequence[Foun
     rest = [item for item in others if item.suspect.label != first.suspect.label]
     if not rest:
         return []
-    looks = team.map(_look, screen_from(simulator, first.fitted), [_beside(base, item) for item in rest])
+    looks = team.map(Screen.look, screen_from(simulator, first.fitted), [_beside(base, item) for item in rest])
     shown = [(item, look) for item, look in zip(rest, looks, strict=True) if look is not None]
     best = sorted(shown, key=lambda pair: pair[1].cost)[:JOINED]
     tasks = [Task(look.hypothesis, look.z, look.residuals, TOGETHER, FINE) for _, look in best]
@@ -53,10 +54,6 @@ def settles(pair: Found, first: Found, little: float) -> bool:
     best single cause does."""
     after, before = left(pair.fitted), left(first.fitted)
     return not of_one_family(pair) and (after < little or after - 1.0 < CLEAR * (before - 1.0))
-
-
-def _look(screen: Screen, starts: Sequence[Hypothesis]) -> Look | None:
-    return screen.look(starts)
 
 
 def _beside(base: Hypothesis, other: Found) -> tuple[Hypothesis, ...]:

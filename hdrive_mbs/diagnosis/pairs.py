@@ -9,6 +9,7 @@ from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import SEEN
 from hdrive_mbs.diagnosis.from_the_best import values_of, with_values
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.joined import TOGETHER
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect, renamed
 from hdrive_mbs.diagnosis.tasks import (
@@ -30,8 +31,6 @@ from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.quantities import is_needed
 
-SWAPPED = 5
-"""Joint steps of a pair with another first cause."""
 MOVED, GOING = 14, 4
 """Joint steps of a pair with a cause at another place or another law, and how many of these pairs take them, the best after the first
 steps.  A drag in place of what had stood for it beside friction passed the other pair in its tenth (c16 of our own fourteenth drive set,
@@ -59,7 +58,7 @@ def swapped(team: Team, simulator: Simulator, pair: Found, first: Label, others:
         base = Hypothesis(own.factors, own.added, {**own.loose, **second.loose})
         hypothesis = Hypothesis(own.factors, (*own.added, renamed(second.added[-1], base)), base.loose)
         start = hypothesis.start(pair.fitted.hypothesis.nominal_part(pair.fitted.z))
-        tasks.append(Task(hypothesis, start, None, SWAPPED, FINE, beat=rivalling(pair.fitted)))
+        tasks.append(Task(hypothesis, start, None, TOGETHER, FINE, beat=rivalling(pair.fitted)))
         names.append(pair.suspect)
     return those_that_ran(names, team.map(run_task, simulator, tasks))
 

@@ -1,9 +1,9 @@
 """Whether the best single causes explain all together, asked before the search for a single one goes on.
 
 Of two causes each alone leaves something, and a search for one that leaves nothing would look at every law and place from other grounds
-in vain.  A pair of wrong causes has not been seen to come as near as that where it is asked, beside a gap above ``search.FAR``: of 136
+in vain.  Pairs of wrong causes have hardly been seen to come as near as that where it is asked, beside a gap above ``search.FAR``: of 136
 cases of our own rotor sets 9 to 17, opened, whose fits are kept, two causes were there in each of the ten whose pair left less than
-``enough`` (tests/unit/test_verdict_constants.py).
+``enough`` (tests/unit/test_verdict_constants.py); what was seen below ``CLEAR`` stands there.
 """
 
 from __future__ import annotations

@@ -95,3 +95,8 @@ def test_every_function_of_analysis_teeth_diagnosis_and_records_is_named_on_a_pa
     pages = [path for path in (ROOT / "docs").rglob("*.md") if not {"_build", "collected", "api"} & set(path.parts)]
     text = "\n".join(path.read_text("utf-8") for path in pages)
     assert not [name for name in functions if not re.search(rf"(?:hm\.|`){name}\b", text)]
+
+
+def test_ci_runs_the_slow_tests_that_the_second_command_leaves_out() -> None:
+    steps = (ROOT / ".ci" / "run").read_text("utf-8").splitlines()
+    assert ".venv/bin/python -m pytest -n auto -m slow" in steps

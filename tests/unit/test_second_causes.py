@@ -224,6 +224,38 @@ def test_laws_and_causes_of_a_pair_are_exchanged_as_long_as_it_leaves_something_
     assert pairs[0] is (better[0] if better else pair)
 
 
+@pytest.mark.parametrize(
+    ("told_leaves", "stages"),
+    [
+        (1.05, ["laws"]),
+        (2.2, ["laws", "first again"]),  # laws alone do not do it
+    ],
+)
+def test_the_first_cause_is_looked_for_again_only_where_other_laws_of_the_pair_leave_something(
+    fitted: tuple[Simulator, Fitted], monkeypatch: pytest.MonkeyPatch, told_leaves: float, stages: list[str]
+) -> None:
+    """No other second cause is looked for: the pair leaves less than a fiftieth of what the first one does, above noise."""
+    simulator, base = fitted
+    null = dataclasses.replace(base, cost=1e5, chi_fit=3000.0, chi_held=3000.0)
+    one = found(base, (DRAG,), 100.0, 6_000.0)
+    pair = found(base, (DRAG, RIPPLE), 2.5, 60_000.0)
+    told = found(base, (DRAG, RIPPLE), told_leaves, 61_000.0)
+    asked: list[str] = []
+    monkeypatch.setattr(second_cause, "joined", lambda *some: [pair])
+    monkeypatch.setattr(second_cause, "with_other_laws", lambda *some: asked.append("laws") or [told])
+    monkeypatch.setattr(second_cause, "alone", lambda *some: [found(base, (RIPPLE,), 200.0, 1_000.0)])
+    monkeypatch.setattr(second_cause, "search", lambda *some, **more: asked.append("first again") or Search(base, ()))
+    for name in ("swapped", "moved", "recast"):
+        monkeypatch.setattr(second_cause, name, lambda *some: [])
+    monkeypatch.setattr(second_cause, "contenders", cheapest_first)
+    with Team(1) as team:
+        _, pairs, _ = second_cause.second_cause(
+            team, simulator, null, {}, [], Search(null, (one,)), (), (), lambda stage, done, total: None
+        )
+    assert asked == stages
+    assert pairs[0] is told
+
+
 @pytest.mark.parametrize("second", [RIPPLE, Added(hm.ViscousDrag(coefficient=0.01), "motor", "drag_2")])
 def test_everything_is_looked_at_beside_the_first_where_the_same_phenomenon_elsewhere_is_all_that_is_known_to_explain_the_rest(
     fitted: tuple[Simulator, Fitted], monkeypatch: pytest.MonkeyPatch, second: Added

@@ -10,6 +10,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
+
+import hdrive_mbs as hm
 
 pytest.importorskip("numba", reason="the plant is compiled: install the extra 'bench'")
 
@@ -443,6 +446,23 @@ def test_a_crack_is_open_where_its_front_lies_below_the_level_line(depth: float,
         heights = -(1.0 - depth) * math.cos(angle) + along * math.sin(angle)
         share = float(np.mean(heights < gape))
         assert openness(5, 0.0, float(angle), depth, gape) == pytest.approx(share, abs=2.0 / points)
+
+
+@pytest.mark.parametrize("gape", [-0.15, 0.0, 0.15])
+@pytest.mark.parametrize("depth", [0.2, 0.5, 0.8])
+def test_no_crack_by_angle_of_the_package_follows_that_of_the_plant(depth: float, gape: float) -> None:
+    """Root mean square over a turn; compliance, steepness and the angle at which it opens are free, as in a fit."""
+    angles = np.linspace(-np.pi, np.pi, 361)
+    plant = np.array([openness(5, 0.0, float(angle), depth, gape) for angle in angles])
+
+    def misses(x: np.ndarray) -> np.ndarray:
+        crack = hm.ArcCrack(compliance=1e-7, position=0.5, steepness=float(x[0]), opens_at=float(x[1]))
+        opening, _ = crack.opening(0.0, np.sin(angles), -np.cos(angles), (0.0, -1.0))
+        return np.asarray(x[2] * np.asarray(opening) - plant)
+
+    bounds = ([0.01, -1.0, 0.0], [30.0, 1.0, 2.0])
+    fits = [least_squares(misses, (steepness, 0.0, 1.0), bounds=bounds) for steepness in (0.5, 2.0, 6.0)]
+    assert min(float(np.sqrt(np.mean(item.fun**2))) for item in fits) > 0.03
 
 
 def test_an_unknown_noise_is_refused() -> None:

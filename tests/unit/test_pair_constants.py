@@ -1,0 +1,82 @@
+"""Constants of the search for a second cause against the stored fits of the opened sets that they were drawn from.
+
+Stored are the cases of these sets that have two causes or for which a second one was searched among everything.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from benchmarks.withheld.calibrate import Stored, stored
+from benchmarks.withheld.names import names_of
+from hdrive_mbs.diagnosis.joined import CLEAR, JOINED
+from hdrive_mbs.diagnosis.second_cause import SLIGHT
+
+OWN = Path(__file__).parents[2] / "benchmarks" / "withheld" / "own"
+SETS = [("drive", n) for n in range(17, 24)] + [("rotor", n) for n in range(21, 24)]
+Label = tuple[str, str]
+
+
+def cases(*sets: tuple[str, int]) -> Iterator[tuple[str, Stored]]:
+    for bench, n in sets:
+        for case in stored(OWN / f"{bench}_{n}" / "raw", OWN / f"{bench}_{n}" / "truths.json"):
+            yield f"{bench}_{n} {case.raw['case']}", case
+
+
+def label(item: Mapping[str, Any]) -> Label:
+    return item["label"][0], item["label"][1]
+
+
+def left(item: Mapping[str, Any]) -> float:
+    return math.sqrt(item["fit"] * item["held"])
+
+
+def is_one_family(item: Mapping[str, Any]) -> bool:
+    return not item["loose"] and len({added["label"][0] for added in item["added"]}) == 1
+
+
+def test_the_second_cause_of_a_pair_is_often_behind_the_next_labels_of_the_search_for_one() -> None:
+    """Places of the last cause of the best pair among the labels of the search, the first one's being 0."""
+    places = []
+    for _, case in cases(*SETS):
+        if len(case.labels["truth"]) < 2 or not case.raw["pairs"]:
+            continue
+        labels = list(dict.fromkeys(map(label, case.raw["search"])))
+        best = max(case.raw["pairs"], key=lambda item: item["log_odds"])
+        others = [label(item) for item in best["added"] if label(item) != labels[0]]
+        places += [labels.index(item) for item in others[-1:] if item in labels]
+    assert len(places) == 22
+    assert sum(place <= JOINED for place in places) == 12
+    behind = sorted(place for place in places if place > JOINED)
+    assert (behind[0] + 1, behind[-1] + 1) == (5, 13)
+
+
+def test_a_pair_that_leaves_next_to_nothing_of_what_the_first_does_has_the_right_second_cause() -> None:
+    right, wrong = {}, {}
+    for case_name, case in cases(*SETS, ("rotor", 24)):
+        first = left(case.raw["search"][0]) if case.raw["search"] else 1.0
+        if not case.raw["second"] or first < SLIGHT:
+            continue
+        names = names_of(case.raw["bench"])
+        truth = [(item["effect"], item["at"]) for item in case.labels["truth"]]
+        for item in case.raw["second"]:
+            share = (left(item) - 1.0) / (first - 1.0)
+            there = right if len(truth) == 2 and names.name(label(item)) in truth else wrong
+            key = case_name, label(item)
+            if not is_one_family(item):
+                there[key] = min(share, there.get(key, math.inf))
+    shares = sorted(right.values())
+    assert sum(share < CLEAR for share in shares) == 12
+    assert shares[11] == pytest.approx(0.0135, abs=5e-5)
+    assert shares[12] == pytest.approx(0.0245, abs=5e-5)
+    astray = sorted((share, *key) for key, share in wrong.items())[:3]
+    assert [item[1:] for item in astray[:2]] == [
+        ("drive_21 drive-c05", ("kinematic_error", "gear")),
+        ("drive_23 drive-c02", ("backlash", "output_shaft")),
+    ]
+    assert [round(item[0], 4) for item in astray] == [0.0002, 0.0055, 0.0376]
