@@ -10,16 +10,21 @@ import psutil
 
 EVERY = 0.3
 """Seconds from one look to the next; what is held for a shorter time may be missed."""
+COUNTED = 30
+"""Looks after which shares are counted in any case, since processes come to share less (or more) of their pages."""
 
 
 class Memory:
     """The most that was held at once within a ``with`` block: ``peak`` [bytes].
 
-    On Linux a page that several processes share counts once (proportional set sizes); elsewhere resident sizes are added up.
+    On Linux a page that several processes share counts once (proportional set sizes); elsewhere resident sizes are added up.  Shares take
+    long to count, and hold up the processes whose pages are counted: they are where resident sizes, less what was shared at the last
+    count, promise more than the peak, where processes have come or gone, and now and then (COUNTED).
     """
 
     def __init__(self) -> None:
         self.peak = 0
+        self.counts = 0
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._watch, name="memory", daemon=True)
 
@@ -33,10 +38,15 @@ class Memory:
 
     def _watch(self) -> None:
         this = psutil.Process()
+        shared, since, number = 0, 0, 0
         while True:
             processes = [this, *this.children(recursive=True)]
-            if sum(map(_resident, processes)) > self.peak:  # shares are never more, and take far longer to count
-                self.peak = max(self.peak, sum(map(_held, processes)))
+            resident = sum(map(_resident, processes))
+            since += 1
+            if resident - shared > self.peak or since > COUNTED or len(processes) != number:
+                held = sum(map(_held, processes))
+                self.peak, shared, since, number = max(self.peak, held), max(0, resident - held), 0, len(processes)
+                self.counts += 1
             if self._ended.wait(EVERY):
                 return
 
