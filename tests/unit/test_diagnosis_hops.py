@@ -120,3 +120,22 @@ def test_a_part_of_a_hop_is_tried_where_the_whole_keeps_little_of_its_promise(
     monkeypatch.setattr(hops, "fit", ended)
     settled(waved, there, 1)  # type: ignore[arg-type]
     np.testing.assert_allclose(begun_at, [0.1 * part for part in parts], rtol=1e-9)
+
+
+@pytest.mark.parametrize(("loose", "promised", "hopped"), [({}, 1.0, 1), ({"stiffness": 10.0}, 1.0, 0), ({"stiffness": 10.0}, 4.0, 1)])
+def test_with_a_cause_in_the_model_a_hop_is_worth_what_log_odds_count(
+    monkeypatch: pytest.MonkeyPatch, loose: dict[str, float], promised: float, hopped: int
+) -> None:
+    waved = Waved(0.0, 1.0)
+    there = begun(waved, 0.8)
+    model = Fitted(**{**vars(there), "hypothesis": Hypothesis(there.hypothesis.factors, loose=loose)})
+    begun_with: list[float | None] = []
+
+    def ended(*_: object, beat: float | None = None, **__: object) -> Fitted:
+        begun_with.append(beat)
+        return Fitted(**{**vars(model), "cost": model.cost - 0.9 * promised})
+
+    monkeypatch.setattr(hops, "_bowl", lambda *_: (np.array([0.1]), promised))
+    monkeypatch.setattr(hops, "fit", ended)
+    settled(waved, model, 1)  # type: ignore[arg-type]
+    assert begun_with == [model.cost] * hopped  # given up where it does not come down to where it began
