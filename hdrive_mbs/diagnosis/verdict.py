@@ -236,9 +236,14 @@ def of_one_family(pair: Found) -> bool:
     return len(families) > 1 and families[-1] in families[:-1]
 
 
+def taken(before: float, after: float) -> float:
+    """Share of the logarithm of a mean square that a cause takes; below 0 where it leaves more, 0 of what is not above 1."""
+    return 1.0 - math.log(max(after, 1.0)) / math.log(before) if before > 1.0 else 0.0
+
+
 def takes_most(before: float, after: float) -> bool:
     """Whether a second cause takes most of the little that the first one leaves, which another law of the first might as well."""
-    return math.log(max(after, 1.0)) < (1.0 - MOST) * math.log(before)
+    return taken(before, after) > MOST
 
 
 def kind_of(found: Found) -> str:

@@ -15,7 +15,8 @@ import pytest
 from benchmarks.withheld.calibrate import Stored, stored
 from benchmarks.withheld.names import names_of
 from hdrive_mbs.diagnosis.joined import CLEAR, JOINED
-from hdrive_mbs.diagnosis.second_cause import SLIGHT
+from hdrive_mbs.diagnosis.second_cause import LEFT, NOTICED, SLIGHT
+from hdrive_mbs.diagnosis.verdict import taken
 
 OWN = Path(__file__).parents[2] / "benchmarks" / "withheld" / "own"
 SETS = [("drive", n) for n in range(17, 24)] + [("rotor", n) for n in range(21, 24)]
@@ -80,3 +81,17 @@ def test_a_pair_that_leaves_next_to_nothing_of_what_the_first_does_has_the_right
         ("drive_23 drive-c02", ("backlash", "output_shaft")),
     ]
     assert [round(item[0], 4) for item in astray] == [0.0002, 0.0055, 0.0376]
+
+
+def test_a_second_cause_that_is_there_takes_a_part_of_what_the_first_leaves_in_a_search() -> None:
+    """Share of the logarithm that the best pair of a search among everything takes of it."""
+    there, alone = [], []
+    for _, case in cases(*SETS, ("rotor", 24)):
+        if not case.raw["second"] or left(case.raw["search"][0]) <= LEFT:
+            continue
+        best = min(case.raw["second"], key=lambda item: item["cost"])
+        pair = len(case.labels["truth"]) == 2
+        (there if pair else alone).append(taken(left(case.raw["search"][0]), left(best)))
+    assert (len(there), len(alone)) == (23, 11)
+    assert min(there) == pytest.approx(0.4223, abs=5e-5)
+    assert sum(share < NOTICED for share in alone) == 7

@@ -153,8 +153,11 @@ def test_what_is_nearly_right_leaves_more_of_a_strong_gap_and_nothing_of_none() 
     assert nearly_right(0.99) == 1.0
 
 
-@pytest.mark.parametrize(("leaves", "second", "exchanged"), [(1.06, 1.001, True), (1.06, 1.03, False), (1.5, 1.3, True), (1.02, 1.0, None)])
-def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_anything_of_much(
+@pytest.mark.parametrize(
+    ("leaves", "second", "exchanged"),
+    [(1.06, 1.001, True), (1.06, 1.03, False), (1.5, 1.3, True), (1.5, 1.4, False), (1.5, 1.6, False), (1.02, 1.0, None)],
+)
+def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_a_part_of_much(
     fitted: tuple[Simulator, Fitted], monkeypatch: pytest.MonkeyPatch, leaves: float, second: float, exchanged: bool | None
 ) -> None:
     simulator, base = fitted
