@@ -126,3 +126,9 @@ def _column(factor: _Factor, given: tuple[float, ...]) -> tuple[tuple[int, float
     solved = np.linalg.solve(root.T, np.linalg.solve(root, np.array(given)))
     size = np.abs(solved) * np.linalg.norm(root, axis=1)
     return tuple((k, value) for k, (value, s) in enumerate(zip(solved.tolist(), size, strict=True)) if s > NEGLIGIBLE * size.max())
+
+
+def forget() -> None:
+    """Let go of factors and columns that are kept for equal matrices."""
+    _factor.cache_clear()
+    _column.cache_clear()

@@ -186,3 +186,8 @@ def _add_lines(ratio: float, lines: Sequence[_Line], terms: _Terms, moment: Mome
             part = size * force
             for name, positive in items:
                 terms.resist(name, part, positive=positive)
+
+
+def forget() -> None:
+    """Let go of the parts that are kept for equal matrices."""
+    _shares.cache_clear()

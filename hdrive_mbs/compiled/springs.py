@@ -109,3 +109,8 @@ def _rounded(column: FloatArray) -> FloatArray:
     ratios = np.array([size / sizes[unit] for size in sizes] + [0.0])
     ratios[unit] = 1.0
     return np.asarray(np.sign(column) * ratios[group])
+
+
+def forget() -> None:
+    """Let go of the springs that are kept for equal matrices."""
+    _springs.cache_clear()

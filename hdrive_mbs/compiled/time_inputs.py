@@ -89,6 +89,12 @@ def _column(key: Hashable, expression: Expression, grid: Grid) -> FloatArray:
     return values
 
 
+def forget() -> None:
+    """Let go of the columns that are kept for later runs."""
+    with _keeping:
+        _kept.clear()
+
+
 def digest(pieces: Pieces) -> bytes:
     """What tells tables of different content apart."""
     if pieces not in _digests:

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.compiled.let_go import let_go
 from hdrive_mbs.compiled.threads import allowed
 from hdrive_mbs.diagnosis.alternatives import Planned, fits_of, records_to_take
 from hdrive_mbs.diagnosis.assumed_bench import assumed_bench
@@ -123,7 +124,10 @@ def diagnose(
     if folder is not None:
         inputs = {"records": chosen, "bench": known, "candidates": tried, "trials": (trials, factors, known.groups, step, EVERY)}
         journal = Journal(folder, inputs)
-    give_back()  # what finding a step took, before processes begin
+    if many := (workers or 1) > 1:
+        coarse.forget()
+        let_go()  # what finding a step took, before processes begin
+    give_back()
     with Team(workers or 1, journal, deadline) as team:
         evidence = gather(coarse, fine, factors, known.groups, tried, team, report)
         claim, best = _concluded(evidence)
@@ -150,6 +154,8 @@ def diagnose(
         "held_out": list(aside),
     }
     del evidence, coarse, fine, trials, trials_of, searched
+    if many:
+        let_go()
     give_back()
     return dataclasses.replace(
         found,
