@@ -66,6 +66,7 @@ class Page(HTMLParser):
             self.headings.append(data)
 
 
+@pytest.mark.slow
 @needs_browser
 @pytest.mark.parametrize("width", [PHONE, DESKTOP])
 def test_page_fits_a_phone_and_a_desktop(made: Path, width: int, tmp_path: Path) -> None:
@@ -74,6 +75,7 @@ def test_page_fits_a_phone_and_a_desktop(made: Path, width: int, tmp_path: Path)
     assert len(found.pictures) >= 10
 
 
+@pytest.mark.slow
 def test_page_has_every_section_and_fetches_nothing(made: Path, document: dict[str, Any]) -> None:
     text = (made / "demo.html").read_text("utf-8")
     page = Page(text)
@@ -90,6 +92,7 @@ def test_page_has_every_section_and_fetches_nothing(made: Path, document: dict[s
     assert document["page_bytes"] == (made / "demo.html").stat().st_size < 6e6
 
 
+@pytest.mark.slow
 def test_every_picture_says_in_words_what_it_shows_and_fits_a_phone(made: Path) -> None:
     pictures = Page((made / "demo.html").read_text("utf-8")).pictures
     assert len(pictures) >= 4 + 4  # run-up twice, Campbell, bearings; gap, a column, places, ranking
@@ -99,6 +102,7 @@ def test_every_picture_says_in_words_what_it_shows_and_fits_a_phone(made: Path) 
     assert len({picture["alt"] for picture in pictures}) == len(pictures)
 
 
+@pytest.mark.slow
 def test_all_run_ups_and_the_campbell_diagram_are_complete(document: dict[str, Any]) -> None:
     assert set(document["run_ups"]) == {"full", "simplified", "improved"}
     assert all(run["status"].startswith("complete") for run in document["run_ups"].values())
@@ -108,11 +112,13 @@ def test_all_run_ups_and_the_campbell_diagram_are_complete(document: dict[str, A
     assert set(document["sections"]) == set(document["cpu_sections"])
 
 
+@pytest.mark.slow
 def test_diagnosis_finds_effect_and_place_in_the_bundled_record(answer: dict[str, Any], document: dict[str, Any]) -> None:
     assert answer["verdict"] == document["diagnosis"] == LABEL["verdict"]
     assert [(cause["effect"], cause["at"]) for cause in answer["causes"]] == [(LABEL["effect"], LABEL["place"])]
 
 
+@pytest.mark.slow
 def test_the_cause_closes_the_gap_on_stretches_that_no_fit_saw(answer: dict[str, Any]) -> None:
     (gap,) = [gap for gap in answer["gaps"] if not gap["record"] and not gap["column"]]
     assert gap["refit"]["value"] > 1.2  # the effect shows most at the start, which the fits see
