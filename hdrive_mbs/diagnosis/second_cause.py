@@ -46,9 +46,9 @@ GLANCE = replace(SHALLOW, held=False)
 """Likewise beside a first one that leaves little: what is missing has bent little then."""
 NOTICED = 0.2
 """Share of the logarithm of what the first cause leaves that the best pair has to take before its causes are exchanged and told by other
-laws: of 23 right pairs of our own drive sets 17 to 23 and rotor sets 21 to 24 that a search found each took 0.42 or more in it, and beside
-seven of eleven causes that were there alone the best second one took less than this (tests/unit/test_pair_constants.py).  Beside a law
-of a runout that leaves 1.29 because it is not exact nothing takes a hundredth of that."""
+laws: in 23 cases with two causes of our own drive sets 17 to 23 and rotor sets 21 to 24 the best pair of a search took 0.42 or more, and
+in seven of eleven with one cause less than this (tests/unit/test_pair_constants.py).  Beside a law of a runout that leaves 1.29 because
+it is not exact nothing takes a hundredth of that."""
 LABELS = 3
 """Single causes that stand in for the first one of the best pair."""
 

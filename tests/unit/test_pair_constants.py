@@ -83,8 +83,8 @@ def test_a_pair_that_leaves_next_to_nothing_of_what_the_first_does_has_the_right
     assert [round(item[0], 4) for item in astray] == [0.0002, 0.0055, 0.0376]
 
 
-def test_a_second_cause_that_is_there_takes_a_part_of_what_the_first_leaves_in_a_search() -> None:
-    """Share of the logarithm that the best pair of a search among everything takes of it."""
+def test_in_cases_with_two_causes_the_best_pair_of_a_search_takes_a_part_of_what_the_first_leaves() -> None:
+    """Share of the logarithm, by what its fit saw and did not see."""
     there, alone = [], []
     for _, case in cases(*SETS, ("rotor", 24)):
         if not case.raw["second"] or left(case.raw["search"][0]) <= LEFT:
