@@ -15,7 +15,7 @@ COUNTED = 30
 
 
 class Memory:
-    """The most that was held at once within a ``with`` block: ``peak`` [bytes].
+    """The most that was held at once within a ``with`` block: ``peak`` [bytes], and how often shares were counted for it: ``counts``.
 
     On Linux a page that several processes share counts once (proportional set sizes); elsewhere resident sizes are added up.  Shares take
     long to count, and hold up the processes whose pages are counted: they are where resident sizes, less what was shared at the last

@@ -9,7 +9,7 @@ def let_go() -> None:
     """Forget machine code, plans of equations, what was made of matrices, and columns of time.
 
     What is in use stays until its user is gone; what is asked for again is made again, machine code from the cache folder.  For a process
-    that from now on leaves the runs to others: on a rotor bench it holds some 90 MB of columns and code after it has found a step.
+    that from now on leaves the runs to others: columns of time alone may take ``time_inputs.KEPT_BYTES``.
     """
     machine.machine.cache_clear()
     structure.shaped.cache_clear()

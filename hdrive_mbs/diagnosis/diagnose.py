@@ -124,7 +124,8 @@ def diagnose(
     if folder is not None:
         inputs = {"records": chosen, "bench": known, "candidates": tried, "trials": (trials, factors, known.groups, step, EVERY)}
         journal = Journal(folder, inputs)
-    if many := (workers or 1) > 1:
+    others_run = (workers or 1) > 1
+    if others_run:
         coarse.forget()
         let_go()  # what finding a step took, before processes begin
     give_back()
@@ -154,7 +155,7 @@ def diagnose(
         "held_out": list(aside),
     }
     del evidence, coarse, fine, trials, trials_of, searched
-    if many:
+    if others_run:
         let_go()
     give_back()
     return dataclasses.replace(
@@ -233,8 +234,7 @@ def answer(
         notes.append(f"Place of the gap: {evidence.place.doubt}")
     extras = pictures_of(evidence, best, [cause.at for cause in claimed]) if pictures else {}
     notes += [item.text for item in checked if not item.differs]
-    is_nominal = not best.hypothesis.added and not best.hypothesis.loose
-    told = "the refitted nominal model" if is_nominal else best.hypothesis.label
+    told = "the refitted nominal model" if best.hypothesis.is_nominal else best.hypothesis.label
     notes += patch_words(evidence.fine, patches(evidence.fine, best), told)
     notes += [f"{best.hypothesis.label}: the fit had not converged when it stopped." for _ in range(not best.converged)]
     return Diagnosis(

@@ -33,8 +33,9 @@ PROMISED = 0.5
 """Gain that the bowl has to promise for a hop to be tried.  Of 23 hops in our own open cases (drive sets 4 and 5, rotor set 3) the 12 that
 promised less gained 0.15 at most, and the 11 others 0.12 to 42, which is 0.16 to 1.1 times what was promised."""
 CAUSES = 3.0
-"""The same where a cause is in the model: log odds count from 5 on (verdict.TIED).  On all samples a hop of two causes took 19 to 22 s, of
-31 coordinates, where the bowl promised 1.4 to 5.2, and gained 0.2 to 1.0 (c02 of our own twenty-fifth rotor set, labels open)."""
+"""The same where a cause is in the model: below the least log odds that decide anything (PARAMETER_ODDS and TIED in verdict.py).  Six
+hops of our own opened rotor set 25 (c02, c06, c12) that promised 0.7 to 5.2 gained 0.2 to 2.9, 0.1 to 2.1 times as much."""
+
 FLAT = 0.1
 """Promise of the bowl by its first differences below which longer ones do not look at it again: of nine first promises in our own opened
 cases (0.001 to 8.6; rotor set 17, drive set 8) the second ones came to 0.5 to 1.1 times as much."""
@@ -43,7 +44,7 @@ cases (0.001 to 8.6; rotor set 17, drive set 8) the second ones came to 0.5 to 1
 def settled(simulator: Simulator, fitted: Fitted, hops: int = 3) -> Fitted:
     """The fit, or a better one that lies within some hops."""
     best = fitted
-    least = CAUSES if fitted.hypothesis.added or fitted.hypothesis.loose else PROMISED
+    least = PROMISED if fitted.hypothesis.is_nominal else CAUSES
     for _ in range(hops if len(fitted.z) else 0):
         proposed, promised = _bowl(simulator, best)
         if promised < least:

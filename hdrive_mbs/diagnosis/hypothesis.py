@@ -140,6 +140,11 @@ class Hypothesis:
         return " + ".join(parts) or "nominal"
 
     @property
+    def is_nominal(self) -> bool:
+        """Whether there is no cause in it."""
+        return not (self.added or self.loose)
+
+    @property
     def labels(self) -> frozenset[tuple[str, str]]:
         """(family, place) of the effects."""
         return frozenset(item.label for item in self.added)

@@ -37,7 +37,7 @@ def joined(team: Team, simulator: Simulator, first: Found, others: Sequence[Foun
     others : single causes, fitted, of labels of their own
     """
     base = first.fitted.hypothesis
-    if not (base.added or base.loose):
+    if base.is_nominal:
         return []
     rest = [item for item in others if item.suspect.label != first.suspect.label]
     if not rest:

@@ -44,11 +44,10 @@ SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 """Of the search for a second cause."""
 GLANCE = replace(SHALLOW, held=False)
 """Likewise beside a first one that leaves little: what is missing has bent little then."""
-NOTICED = 0.1
+NOTICED = 0.2
 """Share of the logarithm of what the first cause leaves that the best pair has to take before its causes are exchanged and told by other
 laws: in 23 cases with two causes of our own drive sets 17 to 23 and rotor sets 21 to 24 the best pair of a search took 0.42 or more, and
-in six of eleven with one cause 0.016 or less (tests/unit/test_pair_constants.py).  Beside a law of a runout that leaves 1.29 because it is
-not exact nothing takes a hundredth of that."""
+in seven of eleven with one cause 0.18 or less (tests/unit/test_pair_constants.py)."""
 LABELS = 3
 """Single causes that stand in for the first one of the best pair."""
 

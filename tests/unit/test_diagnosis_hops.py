@@ -16,6 +16,7 @@ from hdrive_mbs.diagnosis.hops import WORTH, settled
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.robust import Blocks
 from hdrive_mbs.diagnosis.unknowns import Factor
+from hdrive_mbs.diagnosis.verdict import PARAMETER_ODDS, TIED
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -138,4 +139,5 @@ def test_with_a_cause_in_the_model_a_hop_is_worth_what_log_odds_count(
     monkeypatch.setattr(hops, "_bowl", lambda *_: (np.array([0.1]), promised))
     monkeypatch.setattr(hops, "fit", ended)
     settled(waved, model, 1)  # type: ignore[arg-type]
+    assert min(PARAMETER_ODDS, TIED) > hops.CAUSES
     assert begun_with == [model.cost] * hopped  # given up where it does not come down to where it began

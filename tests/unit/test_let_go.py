@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
+import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.compiled import constant_mass, linear_forces, machine, springs, structure, time_inputs
 from hdrive_mbs.compiled.let_go import let_go
 from hdrive_mbs.compiled.line import CompiledLine
+from tests.unit.diagnosis_job import KINDS, run
 
 
 def line() -> CompiledLine:
@@ -42,3 +46,10 @@ def test_a_line_in_use_keeps_its_code() -> None:
     before = made.run(50, 1e-3, step=1e-3)
     let_go()
     np.testing.assert_array_equal(made.run(50, 1e-3, step=1e-3).values["load.speed"], before.values["load.speed"])
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_diagnosis_that_leaves_its_runs_to_processes_keeps_nothing_for_later(tmp_path: Path, workers: int) -> None:
+    run(tmp_path, workers, kinds=KINDS[:1])
+    assert bool(machine.machine.cache_info().currsize) is (workers == 1)
+    assert bool(time_inputs._kept) is (workers == 1)
