@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 
+import numpy as np
+
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.nearly import nearly_right
 from hdrive_mbs.diagnosis.screening import Look
+from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect
 from hdrive_mbs.diagnosis.tasks import Found, is_hopeless
 
@@ -89,6 +92,11 @@ def beyond(fitted: Fitted, leading: Fitted) -> bool:
 def enough(base: Fitted, least: float) -> float:
     """Mean square below which nothing is left that is worth a search: some value, or what a law that is nearly right leaves."""
     return max(least, nearly_right(base.chi_fit))
+
+
+def above_noise(simulator: Simulator) -> float:
+    """Mean square that the fitted samples show of noise alone but for one time in six: one standard deviation above 1, sqrt(2/n) of n."""
+    return 1.0 + math.sqrt(2.0 / int(np.count_nonzero(simulator.fit)))
 
 
 def leaves(after: float, base: Fitted, least: float) -> bool:

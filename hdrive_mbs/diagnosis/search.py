@@ -10,10 +10,10 @@ import numpy as np
 
 from hdrive_mbs.diagnosis.beginnings import begun_at, beside, widths_of
 from hdrive_mbs.diagnosis.candidates import Candidate
-from hdrive_mbs.diagnosis.choosing import SEEN, beyond, enough, leaves, not_begun, passed_over, picked, spread_out, worth
+from hdrive_mbs.diagnosis.choosing import SEEN, above_noise, beyond, enough, leaves, not_begun, passed_over, picked, spread_out, worth
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.force_orders import StandsOut
-from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, restarts, twins, unfinished
+from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, others_there, restarts, twins, unfinished
 from hdrive_mbs.diagnosis.ground import held, is_bent, screen_from
 from hdrive_mbs.diagnosis.hops import settled
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
@@ -122,8 +122,9 @@ def search(
     The best are fitted to the end then, with patience where they leave something (``unfinished``).
     Where all of them leave something, the same is done with the likeliest, the parameters held near the values of the data sheet.
     What came out best is then tried at all other places where it may sit, from the values found; in a shallow search only where it
-    leaves much.  Laws that the best label has not been tried with follow where that leaves something: of two laws that stood for a friction
-    at the wrong end of a shaft the one that came nearer there is not the right one.
+    leaves much.  Where it leaves more than noise does, the other families that were fitted are tried at its place, and where it leaves
+    something, laws that the best label has not been tried with: of two laws that stood for a friction at the wrong end of a shaft the one
+    that came nearer there is not the right one.
     A shallow search begins with held parameters where those of the base are bent.
 
     begin : of the simulator and a fitted model, what says where laws with a period begin
@@ -150,6 +151,8 @@ def search(
     if not done and (how.laws > 1 or (found and found[0].fitted.chi_fit > FAR)):
         moved = elsewhere(found[0] if found else None, base, everything) + (restarts(found, FAR) if how.laws > 1 and how.again else [])
         found = cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
+        if how.laws > 1 and found and left(found[0].fitted) > above_noise(simulator):
+            found = cheapest([*found, *work.fitted(others_there(found, base, everything), "trying other causes there")])
         if how.laws > 1 and found and left(found[0].fitted) > SEEN:
             found = cheapest([*found, *work.fitted(other_laws(found, base, everything), "trying other laws there")])
         found = work.to_the_end(found)
