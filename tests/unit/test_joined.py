@@ -54,7 +54,14 @@ def test_what_shows_beside_the_best_is_joined_with_it_whatever_its_own_rank(simu
     assert len(others) > joining.JOINED
     with Team(1) as team:
         pairs = joined(team, simulator, first, others)
-    assert len(pairs) == joining.JOINED
+        shown = {item.suspect.label for item in pairs} - {others[0].suspect.label}
+        [*_, missed] = [item for item in others if item.suspect.label not in shown and item is not others[0]]
+        again = joined(team, simulator, first, [missed, *(item for item in others if item is not missed)])
+    assert len(pairs) <= joining.JOINED + 1
+    assert others[0].suspect.label in {item.suspect.label for item in pairs}
+    # what came next alone is joined, although others show more beside the best
+    assert len(again) == joining.JOINED + 1
+    assert missed.suspect.label in {item.suspect.label for item in again}
     best = min(pairs, key=lambda item: item.fitted.cost)
     assert best.fitted.hypothesis.labels == {DRAG.label, RIPPLE.label}
     assert best.suspect.label == RIPPLE.label
