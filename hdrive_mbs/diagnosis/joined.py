@@ -33,9 +33,8 @@ def joined(team: Team, simulator: Simulator, first: Found, others: Sequence[Foun
     the one that came next alone.
 
     A look begins at the values that the other was found with alone, which may be bent by having to stand for both, and where its law begins
-    in a search.  It may show nothing of a contact beside another one, where a fit comes down to it: a loose foot beside a clearance on it
-    came next alone and last in the looks, and five steps took it from 52,189 to 38,226, of the 51,863 that the clearance costs (c09 of our
-    own twenty-sixth rotor set, labels open).
+    in a search.  It may show nothing of a contact beside another one, where a fit comes down to it all the same: of a loose foot beside a
+    clearance on it, which came next alone (c09 of our own twenty-sixth rotor set, labels open).
 
     others : single causes, fitted, of labels of their own, best first
     """
