@@ -96,6 +96,19 @@ def test_the_share_of_an_oracle_is_told_as_it_came_out() -> None:
     assert told == "{} of {} ({:.2f} to {:.2f})".format(within, cases, *interval(within, cases))
 
 
+def test_the_share_of_an_oracle_on_the_rotor_bench_is_told_of_every_set_it_was_run_on() -> None:
+    text = (ROOT / "docs" / "diagnosis.md").read_text("utf-8")
+    [(sets, told)] = re.findall(r"^In the rotor sets it was run on \((.+)\): within 10 % in (.+)\.$", text, re.MULTILINE)
+    oracles = {
+        int(path.parent.name.partition("_")[2]): found
+        for path in OWN.glob("rotor_[0-9]*/results.json")
+        if (found := json.loads(path.read_text("utf-8"))["oracle"])
+    }
+    assert [int(number) for number in sets.split(", ")] == sorted(oracles)
+    within, cases = (sum(found[name] for found in oracles.values()) for name in ("within", "cases"))
+    assert told == "{} of {} ({:.2f} to {:.2f})".format(within, cases, *interval(within, cases))
+
+
 def test_the_documentation_leaves_out_no_set_since_the_first_it_names() -> None:
     """Of each bench the last ones without a gap: none that went badly is passed over."""
     for bench in ("drive", "rotor"):

@@ -228,6 +228,42 @@ def test_laws_and_causes_of_a_pair_are_exchanged_as_long_as_it_leaves_something_
 
 
 @pytest.mark.parametrize(
+    ("joined_leaves", "told_leaves", "stages"),
+    [
+        (3.0, 1.05, ["laws"]),  # nothing is left to be looked for
+        (3.0, 2.0, ["laws", "everything"]),  # the same pair is not told by other laws twice
+        (95.0, 1.05, ["everything", "laws"]),  # it takes too little to be told first; beside what a search found, it is
+    ],
+)
+def test_other_laws_of_what_was_put_together_come_before_a_search_among_everything(
+    fitted: tuple[Simulator, Fitted], monkeypatch: pytest.MonkeyPatch, joined_leaves: float, told_leaves: float, stages: list[str]
+) -> None:
+    simulator, base = fitted
+    null = dataclasses.replace(base, cost=1e5, chi_fit=400.0, chi_held=400.0)
+    one = found(base, (DRAG,), 100.0, 6_000.0)
+    pair, told = found(base, (DRAG, RIPPLE), joined_leaves, 60_000.0), found(base, (DRAG, RIPPLE), told_leaves, 61_000.0)
+    searched = found(base, (DRAG, RIPPLE), 30.0, 60_100.0)
+    asked: list[str] = []
+
+    def search(*some: object, **more: object) -> Search:
+        asked.append("everything")
+        return Search(base, (searched,) if joined_leaves > 30.0 else ())
+
+    monkeypatch.setattr(second_cause, "joined", lambda *some: [pair])
+    monkeypatch.setattr(second_cause, "with_other_laws", lambda *some: asked.append("laws") or [told])
+    monkeypatch.setattr(second_cause, "search", search)
+    for name in ("swapped", "moved", "recast", "alone"):
+        monkeypatch.setattr(second_cause, name, lambda *some: [])
+    monkeypatch.setattr(second_cause, "contenders", cheapest_first)
+    with Team(1) as team:
+        _, pairs, _ = second_cause.second_cause(
+            team, simulator, null, {}, [], Search(null, (one,)), (), (), lambda stage, done, total: None
+        )
+    assert asked == stages
+    assert pairs[0] is told
+
+
+@pytest.mark.parametrize(
     ("told_leaves", "stages"),
     [
         (1.05, ["laws"]),
