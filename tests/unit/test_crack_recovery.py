@@ -8,17 +8,16 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.diagnose import diagnose
 from hdrive_mbs.diagnosis.result import Diagnosis
 from hdrive_mbs.effects.effect import Effect
-from hdrive_mbs.records.measurement import Measurement
 from hdrive_mbs.records.record import Record
+from tests.unit.engine_records import STEP, disturbed, engine_record
 
-STEP, DURATION, SPEED, NOISE = 1e-3, 2.0, 300.0, 5e-7
+DURATION, SPEED, NOISE = 2.0, 300.0, 5e-7
 TRIED: tuple[type[Effect], ...] = (hm.ArcCrack, hm.BreathingCrack, hm.RotorUnbalance, hm.ShaftBow, hm.BearingCrossCoupling)
 KNOWLEDGE = {
     "mass of the disc": (("disc.mass",), 0.02),
@@ -68,18 +67,8 @@ def bench() -> hm.Bench:
 
 
 def record(*effects: tuple[Effect, str]) -> Record:
-    plant = scene()
-    known = plant.parameters()
-    plant = plant.replacing(
-        {path: known[path].value * math.exp(sigma * DISTURBED[name]) for name, (paths, sigma) in KNOWLEDGE.items() for path in paths}
-    )
-    for effect, place in effects:
-        plant = plant.with_effect(effect, at=place)
-    times = np.asarray(STEP * np.arange(round(DURATION / STEP) + 1), float)
-    run = hm.simulate(plant, DURATION, solver=hm.Trapezoidal(step=5e-5, newton_tolerance=1e-8), sample_step=STEP, progress=False)
-    rng = np.random.default_rng(5)
-    values = {name: run.at(name, times) + NOISE * rng.standard_normal(len(times)) for name in PROBES}
-    return Record(name="run_up", times=times, channels={n: Measurement(name=n, unit="m", values=v) for n, v in values.items()})
+    plant = disturbed(scene(), KNOWLEDGE, DISTURBED)
+    return engine_record(plant, effects, PROBES, duration=DURATION, noise=NOISE, seed=5)
 
 
 def found_in(*effects: tuple[Effect, str]) -> Diagnosis:

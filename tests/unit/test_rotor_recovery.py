@@ -23,8 +23,9 @@ from hdrive_mbs.effects.rotor_unbalance import RotorUnbalance
 from hdrive_mbs.records.measurement import Measurement
 from hdrive_mbs.records.record import Record
 from models import jeffcott
+from tests.unit.engine_records import STEP, disturbed, engine_record
 
-STEP, DURATION, NOISE = 1e-3, 1.6, 1e-6
+DURATION, NOISE = 1.6, 1e-6
 TRIED: tuple[type[Effect], ...] = (RotorUnbalance, BearingCrossCoupling, ProbeGain)
 KNOWLEDGE = {
     "eccentricity": (("disc.eccentricity",), 0.1),
@@ -49,18 +50,8 @@ def bench() -> hm.Bench:
 
 
 def record(*effects: tuple[Effect, str]) -> Record:
-    plant = scene()
-    known = plant.parameters()
-    plant = plant.replacing(
-        {path: known[path].value * math.exp(sigma * DISTURBED[name]) for name, (paths, sigma) in KNOWLEDGE.items() for path in paths}
-    )
-    for effect, place in effects:
-        plant = plant.with_effect(effect, at=place)
-    times = np.asarray(STEP * np.arange(round(DURATION / STEP) + 1), float)
-    run = hm.simulate(plant, DURATION, solver=hm.Trapezoidal(step=5e-5, newton_tolerance=1e-8), sample_step=STEP, progress=False)
-    rng = np.random.default_rng(3)
-    values = {name: run.at(name, times) + NOISE * rng.standard_normal(len(times)) for name in ("probe_x", "probe_y")}
-    return Record(name="run_up", times=times, channels={n: Measurement(name=n, unit="m", values=v) for n, v in values.items()})
+    plant = disturbed(scene(), KNOWLEDGE, DISTURBED)
+    return engine_record(plant, effects, ("probe_x", "probe_y"), duration=DURATION, noise=NOISE, seed=3)
 
 
 def found_in(*effects: tuple[Effect, str]) -> Diagnosis:
