@@ -47,7 +47,8 @@ GLANCE = replace(SHALLOW, held=False)
 NOTICED = 0.2
 """Share of the logarithm of what the first cause leaves that the best pair has to take before its causes are exchanged and told by other
 laws: in 23 cases with two causes of our own drive sets 17 to 23 and rotor sets 21 to 24 the best pair of a search took 0.42 or more, and
-in seven of eleven with one cause 0.18 or less (tests/unit/test_pair_constants.py)."""
+in seven of eleven with one cause 0.18 or less.  Where a search misses the right second cause its best pair may take less too: 0.19 in c09
+of our own twenty-sixth rotor set (tests/unit/test_pair_constants.py)."""
 LABELS = 3
 """Single causes that stand in for the first one of the best pair."""
 

@@ -97,3 +97,15 @@ def test_in_cases_with_two_causes_the_best_pair_of_a_search_takes_a_part_of_what
     less = sorted(share for share in alone if share < NOTICED)
     assert len(less) == 7
     assert less[-1] == pytest.approx(0.1792, abs=5e-5)
+
+
+def test_the_best_pair_of_a_search_that_misses_the_second_cause_may_take_less() -> None:
+    """Of the sets answered with the bound: a loose foot is in no pair that a search beside the clearance found, so the bound left nothing
+    out that was there, and what was to be followed up has to come from what is put together first."""
+    [case] = [case for name, case in cases(("rotor", 26)) if name == "rotor_26 rotor-c09"]
+    first = left(case.raw["search"][0])
+    assert [item["effect"] for item in case.labels["truth"]] == ["bearing_clearance", "looseness"]
+    assert all("looseness" not in label(item) for item in case.raw["second"])
+    assert taken(first, left(min(case.raw["second"], key=lambda item: item["cost"]))) == pytest.approx(0.1939, abs=5e-5)
+    labels = list(dict.fromkeys(map(label, case.raw["search"])))
+    assert labels[:2] == [("bearing_clearance", "bearing_2"), ("looseness", "bearing_2")]

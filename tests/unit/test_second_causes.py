@@ -39,6 +39,12 @@ def cheapest_first(team: Team, coarse: Simulator, some: list[Found], first: Foun
     return tuple(sorted(some, key=lambda item: item.fitted.cost))
 
 
+def second_to(simulator: Simulator, null: Fitted, one: Found) -> tuple[Search | None, tuple[Found, ...]]:
+    """What is searched for a second cause, and the pairs that may be the best, beside the only one that was found."""
+    with Team(1) as team:
+        return second_cause.second_cause(team, simulator, null, {}, [], Search(null, (one,)), (), (), lambda stage, done, total: None)[:2]
+
+
 def found(fitted: Fitted, added: tuple[Added, ...], leaves: float, odds: float) -> Found:
     """Causes that are said to leave so much."""
     hypothesis = Hypothesis(factors_of(BENCH), added)
@@ -181,10 +187,7 @@ def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_a_part_o
     named("with_other_laws", [])
     named("moved", [])
     named("contenders", (two,))
-    with Team(1) as team:
-        search, pairs, _ = second_cause.second_cause(
-            team, simulator, null, {}, [], Search(null, (one,)), (), (), lambda stage, done, total: None
-        )
+    search, pairs = second_to(simulator, null, one)
     assert ("search" in asked) is (exchanged is not None)
     assert ("swapped" in asked) is (exchanged is True)
     exchanged_in_place = [name for name in asked if name in ("with_other_laws", "recast")]
@@ -219,10 +222,7 @@ def test_laws_and_causes_of_a_pair_are_exchanged_as_long_as_it_leaves_something_
     monkeypatch.setattr(second_cause, "with_other_laws", lambda *some: asked.append("laws") or [])
     monkeypatch.setattr(second_cause, "recast", lambda *some: asked.append("causes") or better)
     monkeypatch.setattr(second_cause, "contenders", cheapest_first)
-    with Team(1) as team:
-        _, pairs, _ = second_cause.second_cause(
-            team, simulator, null, {}, [], Search(null, (one,)), (), (), lambda stage, done, total: None
-        )
+    _, pairs = second_to(simulator, null, one)
     assert asked == stages
     assert pairs[0] is (better[0] if better else pair)
 
@@ -255,10 +255,7 @@ def test_other_laws_of_what_was_put_together_come_before_a_search_among_everythi
     for name in ("swapped", "moved", "recast", "alone"):
         monkeypatch.setattr(second_cause, name, lambda *some: [])
     monkeypatch.setattr(second_cause, "contenders", cheapest_first)
-    with Team(1) as team:
-        _, pairs, _ = second_cause.second_cause(
-            team, simulator, null, {}, [], Search(null, (one,)), (), (), lambda stage, done, total: None
-        )
+    _, pairs = second_to(simulator, null, one)
     assert asked == stages
     assert pairs[0] is told
 
@@ -287,10 +284,7 @@ def test_the_first_cause_is_looked_for_again_only_where_other_laws_of_the_pair_l
     for name in ("swapped", "moved", "recast"):
         monkeypatch.setattr(second_cause, name, lambda *some: [])
     monkeypatch.setattr(second_cause, "contenders", cheapest_first)
-    with Team(1) as team:
-        _, pairs, _ = second_cause.second_cause(
-            team, simulator, null, {}, [], Search(null, (one,)), (), (), lambda stage, done, total: None
-        )
+    _, pairs = second_to(simulator, null, one)
     assert asked == stages
     assert pairs[0] is told
 
@@ -313,10 +307,7 @@ def test_everything_is_looked_at_beside_the_first_where_the_same_phenomenon_else
     for name in ("swapped", "alone", "moved"):
         monkeypatch.setattr(second_cause, name, lambda *some: [])
     monkeypatch.setattr(second_cause, "contenders", cheapest_first)
-    with Team(1) as team:
-        _, pairs, _ = second_cause.second_cause(
-            team, simulator, null, {}, [], Search(null, (one,)), (), (), lambda stage, done, total: None
-        )
+    _, pairs = second_to(simulator, null, one)
     assert asked == ([] if second is RIPPLE else ["search"])
     assert pairs[0] is (known if second is RIPPLE else right)
 
