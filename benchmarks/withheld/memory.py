@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import threading
 from types import TracebackType
 from typing import Self
@@ -12,6 +13,8 @@ EVERY = 0.3
 """Seconds from one look to the next; what is held for a shorter time may be missed."""
 COUNTED = 30
 """Looks after which shares are counted in any case, since processes come to share less (or more) of their pages."""
+LISTED = 4
+"""Looks after which the processes are listed again, for which all processes of the computer are read."""
 
 
 class Memory:
@@ -39,8 +42,10 @@ class Memory:
     def _watch(self) -> None:
         this = psutil.Process()
         shared, since, number = 0, 0, 0
-        while True:
-            processes = [this, *this.children(recursive=True)]
+        processes: list[psutil.Process] = []
+        for look in itertools.count():
+            if look % LISTED == 0:
+                processes = [this, *this.children(recursive=True)]
             resident = sum(map(_resident, processes))
             since += 1
             if resident - shared > self.peak or since > COUNTED or len(processes) != number:

@@ -92,7 +92,14 @@ class _Function:
         return {angle: {} for angle in sines & cosines}
 
     def _real(self, k: int) -> str:
-        """A step as a number; comparisons become 1 or 0."""
+        """A step as a number; comparisons become 1 or 0.
+
+        A state is read from memory wherever it is used: there are more of them than registers, and those that are kept are written to
+        memory and read again.
+        """
+        step = self.structure.steps[k]
+        if step.operation == "variable":
+            return self._value(step)
         if k not in self.values:
             self.values[k] = self.write.new(f"uitofp {self.write.truth} {self.truths[k]} to {self.write.real}")
         return self.values[k]
@@ -100,7 +107,7 @@ class _Function:
     def _truth(self, k: int) -> str:
         """A step as a truth value."""
         if k not in self.truths:
-            self.truths[k] = self.write.compare("une", self.values[k], self.write.number(0.0))
+            self.truths[k] = self.write.compare("une", self._real(k), self.write.number(0.0))
         return self.truths[k]
 
     def _step(self, k: int, step: Step) -> None:
@@ -114,7 +121,7 @@ class _Function:
         elif operation == "where":
             test, yes, no = step.arguments
             self.values[k] = write.choose(self._truth(test), self._real(yes), self._real(no))
-        else:
+        elif operation != "variable":
             self.values[k] = self._value(step)
 
     def _value(self, step: Step) -> str:
