@@ -72,7 +72,8 @@ class VaryingInertia:
         node, angle = self.node(), self._angle(moment)
         onto: Value = 0.0
         for element in self.elements():
-            if not (isinstance(element, AppliedTorque) and element.torque in self._torques):
+            # a torque on another place may be that of its own varying inertia, which would ask for this one
+            if not (isinstance(element, AppliedTorque) and (element.coordinate != node.name or element.torque in self._torques)):
                 onto = onto + element.contribution(moment).get(node.name, 0.0)
         shares = sum(share(angle) for share, _ in self._shares)
         slopes = sum(slope(angle) for _, slope in self._shares)

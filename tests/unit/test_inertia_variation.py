@@ -92,6 +92,40 @@ def test_an_arm_on_a_gear_moves_as_hamilton_says(order: tuple[str, str]) -> None
         np.testing.assert_allclose(balance.dissipated[name], 0.0, atol=1e-7 * balance.energy_scale)
 
 
+def test_inertias_at_both_ends_of_a_gear_move_as_hamilton_says() -> None:
+    """Motor and arm, each with p = J (1 + r) w:  da/dt = p/(J (1 + r)),  dp/dt = T + J r' w^2/2; engine and compiled run."""
+    motor_inertia, motor_share = 1e-3, 0.2
+    scene = arm().with_effect(hm.InertiaVariation(variation=motor_share, order=1.0, phase=0.3), at="motor", name="first")
+    scene = scene.with_effect(hm.InertiaVariation(variation=0.4, order=2.0, phase=0.9), at="arm", name="second")
+    sense = sense_of_arm(scene)
+    start = {"motor.speed": 100.0, "arm.speed": sense * 2.0}
+    response = hm.simulate(scene, 0.4, solver=TIGHT, initial=start, sample_step=0)
+
+    def shares(motor: float, angle: float) -> tuple[float, float, float, float]:
+        """Of the forward angles: r and dr/dq of both."""
+        first = motor_share * math.sin(motor + 0.3), motor_share * math.cos(motor + 0.3)
+        true = 2.0 * sense * angle + 0.9
+        return *first, 0.4 * math.sin(true), 0.8 * sense * math.cos(true)
+
+    def rates(t: float, y: np.ndarray) -> list[float]:
+        motor, angle, of_motor, of_arm = y
+        r, slope, s, bend = shares(motor, angle)
+        fast, slow = of_motor / (motor_inertia * (1.0 + r)), of_arm / (INERTIA * (1.0 + s))
+        torque = STIFFNESS * (motor / RATIO - angle)
+        drive = 0.3 * math.sin(9.0 * t) - torque / RATIO
+        return [fast, slow, drive + 0.5 * motor_inertia * slope * fast**2, torque + 0.5 * INERTIA * bend * slow**2]
+
+    r, _, s, _ = shares(0.0, 0.0)
+    begin = [0.0, 0.0, motor_inertia * (1.0 + r) * 100.0, INERTIA * (1.0 + s) * 2.0]
+    found = solve_ivp(rates, (0.0, 0.4), begin, t_eval=response.times, rtol=1e-10, atol=1e-12, method="DOP853").y
+    np.testing.assert_allclose(response["motor.angle"].values, found[0], atol=1e-6)
+    np.testing.assert_allclose(sense * response["arm.angle"].values, found[1], atol=1e-6)
+    assert hm.energy_balance(response).energy_error < 1e-7
+    run = CompiledLine(scene.network(), ["motor.angle", "arm.angle"]).run(401, 1e-3, step=1e-4, speeds={"motor": 100.0, "arm": 2.0})
+    np.testing.assert_allclose(run.values["motor.angle"], response["motor.angle"].at(run.times), atol=1e-5)
+    np.testing.assert_allclose(run.values["arm.angle"], response["arm.angle"].at(run.times), atol=1e-6)
+
+
 def test_a_swing_is_slower_where_the_inertia_is_larger() -> None:
     """f = sqrt(k/(J (1 + A sin p))) about angle 0."""
     parts = {"disc": hm.Inertia(inertia=0.1), "shaft": hm.Shaft(stiffness=1e3, damping=0.0)}
