@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -11,11 +11,12 @@ import numpy as np
 
 from hdrive_mbs.diagnosis.choosing import beyond
 from hdrive_mbs.diagnosis.fit import Fitted
+from hdrive_mbs.diagnosis.from_its_values import from_its_values
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.located import Located, located
 from hdrive_mbs.diagnosis.search import HOPS
 from hdrive_mbs.diagnosis.simulator import Simulator
-from hdrive_mbs.diagnosis.tasks import FINE, NEAR, Task, rivalling, run_task
+from hdrive_mbs.diagnosis.tasks import FINE, NEAR, Task, further, rivalling, run_task
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.errors import AnalysisError
 
@@ -23,6 +24,8 @@ Work = Callable[[Simulator], Any]
 
 LAST, LONG = 4, 20
 """Steps that these fits may take, and those of the best."""
+ROUNDS = 2
+"""In which fits begin again from the values of the best one."""
 EXACT = 1e-6
 """Relative change of the cost that ends them where little is left."""
 CANNOT_RUN = "The nominal scene cannot be simulated through all of the records; look at its start values and inputs."
@@ -48,6 +51,8 @@ def on_all_samples(
 ) -> Last:
     """Fit on from where a search on fewer samples came to, side by side: the best first, and the others as far as they may catch up.
 
+    The law of the best at the places of others is fitted there from its values too (from_its_values.py).
+
     null : the nominal model, refitted;  found : with one cause or several;  place : where the gap lies, if that is known already
 
     Raises AnalysisError where the nominal model cannot be simulated.
@@ -68,10 +73,31 @@ def on_all_samples(
     beat = next((rivalling(item) for item in leading if item is not None), None)
     work = [partial(run_task, task=replace(tasks[k], beat=beat)) for k in rest]
     others |= dict(zip(rest, team.map(_done, fine, work, lambda done, total: said(2 + len(best) + done, whole)), strict=True))
+    others |= _levelled(team, fine, others, {k for k, task in enumerate(tasks) if task.steps < LONG})
     if place is None:
         team.dismiss()  # it is the last that they do, and a localisation needs the memory
         place = located(fine, refitted)
     return Last(nominal, refitted, tuple(others[k] for k in range(len(found))), place)
+
+
+def _levelled(team: Team, fine: Simulator, fits: Mapping[int, Fitted | None], brief: Collection[int]) -> dict[int, Fitted]:
+    """The fits, the best one to its end, and others with its laws from its values where they come down farther from there than they had.
+
+    Again where one of these is the best then.
+
+    brief : numbers of those that had few steps
+    """
+    ran = {number: item for number, item in fits.items() if item is not None}
+    for _ in range(min(ROUNDS, len(ran))):
+        best = min(ran, key=lambda number: ran[number].cost)
+        if best in brief and not ran[best].converged:
+            ran[best] = run_task(fine, further(ran[best], LONG, EXACT)) or ran[best]
+        tasks = from_its_values(ran, LONG, EXACT)
+        found = team.map(_done, fine, [partial(run_task, task=task) for task in tasks.values()])
+        ran |= {k: item for k, item in zip(tasks, found, strict=True) if item is not None and item.cost < ran[k].cost}
+        if min(ran, key=lambda number: ran[number].cost) == best:
+            break
+    return ran
 
 
 def _done(fine: Simulator, work: Work) -> Any:
