@@ -33,7 +33,7 @@ def test_equations_with_two_effects_can_be_recorded(bench: Bench) -> None:
     for item in found:
         places.setdefault(item.kind.__name__, []).append(item)
     twice = [(some[0], other) for some in places.values() for other in some[1:]]
-    beside = list(zip(found, [*found[7:], *found[:7]], strict=True))  # another law, here or there
+    beside = list(zip(found, [*found[7:], *found[:7]], strict=True))[::3]  # another law, here or there
     came = {name: [recorded(bench, *pair) for pair in pairs] for name, pairs in (("twice", twice), ("beside", beside))}
     assert sum(came["twice"]) > 0.8 * len(twice)
     assert sum(came["beside"]) > 0.8 * len(beside)
