@@ -50,19 +50,21 @@ def kind_of(truth: Sequence[Mapping[str, Any]]) -> str:
 
 
 def score(case: str, labels: Mapping[str, Any], answer: Mapping[str, Any] | None) -> Row:
-    """Scores of a case; no answer counts as wrong."""
+    """Scores of a case; no answer counts as wrong, and so does one that the runner gave for a method that failed ("unknown" with the error,
+    see ``failed_answer``): it would be right by chance where the cause has no name."""
     truth = labels["truth"]
     kind = kind_of(truth)
     want = [(item["effect"], item["at"]) for item in truth]
     found = answer or {}
     got = [(item["effect"], item.get("at")) for item in found.get("effects", [])]
     said, names = found.get("verdict", "no answer"), [name for name, _ in got]
+    right = said == kind and "error" not in found
     ranking = found.get("ranking", [])
     place: bool | None
     brier = None
     first_place = [item["at"] for item in found.get("where", [])[:1]]
     if kind in ("none", "unknown"):
-        effect = top = tied = said == kind and not got
+        effect = top = tied = right and not got
         place = None if kind == "none" and answer is not None else bool(want) and first_place == [want[0][1]]
     else:
         wanted = sorted(name for name, _ in want)
@@ -80,7 +82,7 @@ def score(case: str, labels: Mapping[str, Any], answer: Mapping[str, Any] | None
         answered=answer is not None,
         said=said,
         effect=effect,
-        verdict=said == kind,
+        verdict=right,
         tied=tied,
         top=top,
         place=place,

@@ -14,7 +14,8 @@ EVERY = 0.3
 COUNTED = 30
 """Looks after which shares are counted in any case, since processes come to share less (or more) of their pages."""
 LISTED = 4
-"""Looks after which the processes are listed again, for which all processes of the computer are read."""
+"""Looks after which the processes are listed again, for which all processes of the computer are read; one that lives for a shorter time may
+be missed."""
 
 
 class Memory:

@@ -140,9 +140,8 @@ def test_no_more_than_a_few_laws_begin_again(simulator: Simulator) -> None:
 
 def test_a_rub_that_was_fitted_at_the_wrong_angle_is_found_at_the_right_one(simulator: Simulator, base: Fitted) -> None:
     everything = suspects(base.hypothesis, {}, candidates(BENCH.scene, hm.RubAtAngle))
-    # no fit is let go there: rounding decides how sharp and strong a rub becomes at the wrong angle, from where not all machines come out
-    wrong = begun(RUB.replacing(angle=-1.5, friction=0.05))
-    hollow = fit(simulator, wrong, wrong.start(base.z), steps=0)
+    wrong = begun(RUB.replacing(angle=-1.5, friction=0.5))
+    hollow = fit(simulator, wrong, wrong.start(base.z), steps=25)
     rub = Found(Suspect((hm.RubAtAngle.family, "load"), "RubAtAngle", (wrong,), (wrong,)), hollow)
     assert hollow.chi_fit > 2.0
     with Team(1) as team:

@@ -366,6 +366,14 @@ def test_scores_of_answers_made_by_hand() -> None:
     assert (by["drive-c1"].detectability, by["drive-c2"].detectability) == (None, 4e3)
 
 
+def test_a_case_that_failed_is_not_right_because_it_has_no_name() -> None:
+    failed = [failed_answer(case, "RecursionError: maximum recursion depth exceeded", 20.0) for case in ("drive-c1", "drive-c4")]
+    rows = scoring.rows_of({case: TRUTHS[case] for case in ("drive-c1", "drive-c4")}, {answer["case"]: answer for answer in failed})
+    assert [(row.effect, row.verdict, row.tied, row.top) for row in rows] == [(False,) * 4] * 2
+    assert rows[1].place is False
+    assert str(shares(rows)["unknown caught"]).startswith("0/1")
+
+
 def test_gap_energy_closed_counts_above_the_floor() -> None:
     assert closed(GAP) == pytest.approx(1.0 - (1.1**2 - 1.0) / (10.0**2 - 1.0))
 
