@@ -17,7 +17,7 @@ from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, othe
 from hdrive_mbs.diagnosis.ground import held, is_bent, screen_from
 from hdrive_mbs.diagnosis.hops import settled
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
-from hdrive_mbs.diagnosis.other_starts import from_other_starts
+from hdrive_mbs.diagnosis.other_starts import from_other_starts, going_on
 from hdrive_mbs.diagnosis.periods import Periods
 from hdrive_mbs.diagnosis.scans import fits_from, scan, worth_a_scan
 from hdrive_mbs.diagnosis.screening import Look, Screen
@@ -260,9 +260,9 @@ class _Work:
     def other_ways(self, found: list[Found], base: Fitted, everything: Sequence[Suspect]) -> list[Found]:
         """What was found and, where it leaves something, the other laws of the best label, and these laws begun elsewhere.
 
-        Those that came nearest in their first steps from other values of what decides whether they show are fitted on, as far as they
-        are not hopeless beside the best.  Where the best leaves nothing, its laws begin in the hollows alone that they name beside what was
-        found: in a short record the wrong one of them may leave next to nothing.
+        Those that came nearest in their first steps from other values of what decides whether they show, and the one that these steps bring
+        down most, are fitted on, as far as they are not hopeless beside the best.  Where the best leaves nothing, its laws begin in the
+        hollows alone that they name beside what was found: in a short record the wrong one of them may leave next to nothing.
         """
         inexact = is_inexact(found, base)
         if inexact:
@@ -271,9 +271,10 @@ class _Work:
         if asked and inexact and self.team.deadline.passed("laws of the best cause begun elsewhere"):
             return found
         self._elsewhere.update((suspect.label, suspect.law) for suspect, _ in asked)
-        begun = sorted(self.fitted(asked, "beginning the best elsewhere"), key=lambda item: item.fitted.cost)
-        near = [item for item in begun if not beyond(item.fitted, found[0].fitted)][: self.how.serious]
-        going = [(item.suspect, further(item.fitted, 2 * STEPS, beat=rivalling(found[0].fitted))) for item in near]
+        begun = self.fitted(asked, "beginning the best elsewhere")
+        near = [item for item in begun if not beyond(item.fitted, found[0].fitted)]
+        beat = rivalling(found[0].fitted) if found else None
+        going = [(item.suspect, further(item.fitted, 2 * STEPS, beat=beat)) for item in going_on(near, self.how.serious, 2 * STEPS)]
         return cheapest([*found, *begun, *self.fitted(going, "fitting on from there")])
 
     def to_the_end(self, found: list[Found]) -> list[Found]:

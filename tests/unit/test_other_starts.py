@@ -15,7 +15,7 @@ from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
-from hdrive_mbs.diagnosis.other_starts import LAWS, MOST, farthest, from_other_starts, others
+from hdrive_mbs.diagnosis.other_starts import LAWS, MOST, farthest, from_other_starts, going_on, others
 from hdrive_mbs.diagnosis.periods import Periods
 from hdrive_mbs.diagnosis.search import Depth, _Work, is_inexact
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -136,6 +136,19 @@ def test_no_more_than_a_few_laws_begin_again(simulator: Simulator) -> None:
     names = [f"law {k}" for k in range(LAWS + 2)]
     asked = from_other_starts([found(simulator, RUB, 3.0, name) for name in names], [dataclasses.replace(rub, law=name) for name in names])
     assert list(dict.fromkeys(suspect.law for suspect, _ in asked)) == names[:LAWS]
+
+
+def test_of_what_was_begun_elsewhere_the_one_that_falls_fastest_goes_on_beside_the_cheapest(simulator: Simulator) -> None:
+    plain = found(simulator, RUB, 3.0)
+
+    def at(*costs: float) -> Found:
+        return dataclasses.replace(plain, fitted=dataclasses.replace(plain.fitted, cost=costs[-1], history=costs))
+
+    slow, slower, fast, faster, still = at(104.0, 101.0), at(104.0, 102.0), at(400.0, 300.0), at(900.0, 350.0), at(310.0)
+    assert going_on([faster, fast, slower, slow, still], 2, 6) == [slow, slower, faster]
+    assert going_on([fast, still, slow], 2, 6) == [slow, fast, still]
+    assert going_on([slow], 2, 6) == [slow]
+    assert going_on([], 2, 6) == []
 
 
 def test_a_rub_that_was_fitted_at_the_wrong_angle_is_found_at_the_right_one(simulator: Simulator, base: Fitted) -> None:
