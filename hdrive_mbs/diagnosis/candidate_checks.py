@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import hdrive_mbs
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.refusals import taken
 from hdrive_mbs.diagnosis.search import Search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.unknowns import Factor
@@ -31,18 +32,25 @@ def check_candidates(tried: Sequence[Candidate], simulator: Simulator, factors: 
         finite = False
         for added in item.first:
             hypothesis = Hypothesis(base.factors, (added,))
+            taken()
             try:
                 finite = finite or simulator.residuals(hypothesis, [hypothesis.start()])[0] is not None
             except Exception as error:
-                raise ParameterError(
-                    f"{where}: its law raised {type(error).__name__}: {error}. Mend it (a law may use numpy functions, but no if, min,"
-                    " float() on its arguments), or leave the class out."
-                ) from error
+                raise _raised(where, f"{type(error).__name__}: {error}") from error
+            for said in taken().values():
+                raise _raised(where, said)
         if not finite:
             raise ParameterError(
                 f"{where}: its law gives values that are not finite with {item.first[0].effect!r}, with which its search begins."
                 " Mend it (a root or a quotient at rest, say), give its fields other typical values, or leave the class out."
             )
+
+
+def _raised(where: str, said: str) -> ParameterError:
+    return ParameterError(
+        f"{where}: its law raised {said}. Mend it (a law may use numpy functions, but no if, min, float() on its arguments), or leave the"
+        " class out."
+    )
 
 
 def left_out(tried: Sequence[Candidate], found: Search, step: float) -> tuple[str, ...]:

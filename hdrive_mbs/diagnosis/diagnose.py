@@ -33,6 +33,7 @@ from hdrive_mbs.diagnosis.input_checks import check_records, check_trials, not_c
 from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.pictures import pictures_of
 from hdrive_mbs.diagnosis.record_words import record_words
+from hdrive_mbs.diagnosis.refusals import refused_words
 from hdrive_mbs.diagnosis.result import Cause, Diagnosis
 from hdrive_mbs.diagnosis.ringing import ringing_words
 from hdrive_mbs.diagnosis.scale_checks import looks_scaled
@@ -142,6 +143,7 @@ def diagnose(
         *left_out(tried, evidence.single, step),
         *ringing_words(trials),
         *team.lost,
+        *refused_words(team.refused),
         *(() if journal is None else journal.said),
         *reported,
     )

@@ -17,9 +17,10 @@ from hdrive_mbs.compiled.structure import Structure
 from hdrive_mbs.compiled.time_inputs import TimeInput
 from hdrive_mbs.diagnosis.following import following
 from hdrive_mbs.diagnosis.hypothesis import FloatArray, Hypothesis
+from hdrive_mbs.diagnosis.refusals import refuse
 from hdrive_mbs.diagnosis.templates import Templates, alike
 from hdrive_mbs.diagnosis.trial import Trial
-from hdrive_mbs.errors import LawError, ParameterError, PlaceError
+from hdrive_mbs.errors import HdriveError, LawError, ParameterError, PlaceError
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.quantities import Described
 from hdrive_mbs.scene import Scene
@@ -126,7 +127,7 @@ class Lines:
         """Lines of a scene as trial k sees it: from templates where there are any, else each of its own network."""
         templates = self._templates[scene.network().is_lateral]
         found = templates.lines(hypothesis, scene, points, k, lambda made: self._compiled(made, k))
-        return [self._compiled(network(number), k) if line is None else line for number, line in enumerate(found)]
+        return [self._line(network(number), k, hypothesis) if line is None else line for number, line in enumerate(found)]
 
     def _view(self, k: int) -> tuple[str, ...]:
         """What of the scene a trial shows."""
@@ -148,7 +149,7 @@ class Lines:
             own = self._own(k, hypothesis, point)
             same = own is not None and alike(own.program, base.program)
             if own is not None and not same:  # built as the own one is: numbers that happen to be equal may have made one of two
-                other = self._compiled(_network(hypothesis, scene, point), of)
+                other = self._line(_network(hypothesis, scene, point), of, hypothesis)
                 same = other is not None and _same(own.program, other.program)
             self._known[key] = (base.program.inputs, own.program.inputs) if same and own is not None else None
         known = self._known[key]
@@ -159,7 +160,17 @@ class Lines:
         return own if own is not None else self._own(k, hypothesis, point)
 
     def _own(self, k: int, hypothesis: Hypothesis, point: FloatArray) -> CompiledLine | None:
-        return self._compiled(_network(hypothesis, self._trials[k].scene, point), k)
+        return self._line(_network(hypothesis, self._trials[k].scene, point), k, hypothesis)
+
+    def _line(self, network: Network | None, k: int, hypothesis: Hypothesis) -> CompiledLine | None:
+        """As ``_compiled``; None for a cause whose law raises too, which is noted."""
+        try:
+            return self._compiled(network, k)
+        except HdriveError:
+            raise
+        except Exception as error:
+            _refuse(hypothesis, error)
+            return None
 
     def _compiled(self, network: Network | None, k: int) -> CompiledLine | None:
         """The line of trial k; None for values with which no compiled run can follow it, like a weight that makes a disc uneven.
@@ -212,6 +223,18 @@ def _network(hypothesis: Hypothesis, scene: Scene, point: FloatArray) -> Network
         return hypothesis.scene(scene, point, to_run=True).network()
     except (ParameterError, LawError, PlaceError):  # PlaceError: a cause found elsewhere that does not go with this place
         return None
+    except HdriveError:
+        raise
+    except Exception as error:
+        _refuse(hypothesis, error)
+        return None
+
+
+def _refuse(hypothesis: Hypothesis, error: Exception) -> None:
+    """Note what the law of a cause raised; raises it where there is no cause, or no memory."""
+    if not hypothesis.added or isinstance(error, MemoryError):
+        raise error
+    refuse(hypothesis.label, error)
 
 
 def _alike(a: Scene, b: Scene) -> bool:

@@ -21,6 +21,7 @@ from hdrive_mbs.diagnosis.deadline import Deadline
 from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.later import Later
 from hdrive_mbs.diagnosis.packing import packed
+from hdrive_mbs.diagnosis.refusals import taken
 from hdrive_mbs.diagnosis.worker import Worker, threads_of_each
 from hdrive_mbs.errors import AnalysisError, ParameterError
 from hdrive_mbs.worker_process import READY
@@ -40,6 +41,7 @@ class Team:
     workers : processes;  journal : where finished work is kept, if it is to be
     deadline : until when those who give it work look for more; never if not given
     lost : what became of processes that died; another one takes over their item, once
+    refused : causes whose law raised at work, with what it said (refusals.py)
     """
 
     def __init__(self, workers: int, journal: Journal | None = None, deadline: Deadline | None = None) -> None:
@@ -51,8 +53,10 @@ class Team:
         self._number = 0
         self._threads = threads_of_each()
         self.lost: list[str] = []
+        self.refused: dict[str, str] = {}
 
     def __enter__(self) -> Self:
+        taken()  # of whoever was here before
         if self.workers > 1:
             self._folder = tempfile.TemporaryDirectory(prefix="hdrive_mbs_")
         return self
@@ -110,6 +114,7 @@ class Team:
             for k in left:
                 with allowed(lambda: self._share(1 + self._apart)):
                     answer = function(shared, items[k])
+                self.refused |= taken()
                 finished(k, answer)
         else:
             self._side_by_side(function, shared, {k: items[k] for k in left}, finished)
@@ -192,12 +197,13 @@ class Team:
         Raises EOFError or OSError where a process died at an item.
         """
         try:
-            good, answer = worker.pipe.recv()
+            good, answer, refused = worker.pipe.recv()
         except (EOFError, OSError):
             if worker.apart is None or not worker.ready:
                 raise
             self.lost.append(f"{self._died(worker, worker.apart.item)} This process takes over when it is needed.")
             return None
+        self.refused |= refused
         if not worker.ready:
             assert answer == READY
             worker.ready = True

@@ -14,6 +14,7 @@ from typing import Any
 from hdrive_mbs.compiled.threads import allowed
 from hdrive_mbs.diagnosis.later import Later
 from hdrive_mbs.diagnosis.packing import packed, unpacked
+from hdrive_mbs.diagnosis.refusals import taken
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.freed_memory import give_back
 from hdrive_mbs.worker_process import READY, WorkerProcess, work_for_parent
@@ -55,11 +56,11 @@ class Worker(WorkerProcess):
 
 
 def _work(pipe: connection.Connection, threads: ctypes.c_int) -> None:
-    """Answer items until the pipe is closed: (True, answer) or (False, error with the lines where it arose)."""
+    """Answer items until the pipe is closed: (True, answer, refused) or (False, error with the lines where it arose, refused)."""
     work_for_parent()
     known: dict[str, Any] = {}
     with contextlib.suppress(EOFError, OSError), allowed(lambda: threads.value):
-        pipe.send((True, READY))
+        pipe.send((True, READY, {}))
         while True:
             path, data = pipe.recv()
             try:
@@ -68,9 +69,10 @@ def _work(pipe: connection.Connection, threads: ctypes.c_int) -> None:
                     give_back()
                     known[path] = unpacked(Path(path).read_bytes())
                 function, item = unpacked(data)
-                pipe.send((True, function(known[path], item)))
+                answer = function(known[path], item)
+                pipe.send((True, answer, taken()))
             except Exception as error:
-                pipe.send((False, _sendable(error)))
+                pipe.send((False, _sendable(error), taken()))
 
 
 def _sendable(error: Exception) -> Exception:

@@ -543,6 +543,25 @@ def test_an_effect_of_a_users_own_that_works_takes_part_without_registration() -
     assert found.causes[0].parameters[0].value == pytest.approx(0.05, rel=0.01)
 
 
+class RaisesWhereItIsLarge(_Own):
+    """A friction whose law has a fault that the values with which a search begins do not show."""
+
+    def torque(self, time: Value, angle: Value, speed: Value) -> Value:
+        if self.size > 0.03:
+            raise ZeroDivisionError("no room for so much")
+        return super().torque(time, angle, speed)
+
+
+def test_a_law_that_raises_in_the_search_is_named_and_the_search_goes_on() -> None:
+    found = run(kinds=(RaisesWhereItIsLarge, KinematicError), given=records((_Own(size=0.05), "motor")))
+    assert found.causes[0].at == "motor"
+    assert found.causes[0].parameters[0].value == pytest.approx(0.03, rel=1e-3)  # as far as it can be run
+    [said] = [note for note in found.notes if "A law raised" in note]
+    assert "RaisesWhereItIsLarge at motor (TraceError: the law cannot be recorded (ZeroDivisionError: no room for so much))" in said
+    assert "passed over" in said
+    assert "A law raised at values" in report_text(found)
+
+
 def test_where_all_candidates_fail_the_answer_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """A law of the library that overflows with its start values: the search goes on without it."""
 

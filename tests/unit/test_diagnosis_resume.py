@@ -27,6 +27,7 @@ from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.locate.latent_force import LatentForce, TurnedForce
 from hdrive_mbs.diagnosis.located import Located
 from hdrive_mbs.diagnosis.packing import packed, unpacked
+from hdrive_mbs.diagnosis.refusals import refuse, refused_words
 from hdrive_mbs.diagnosis.result import Diagnosis, Place
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -340,6 +341,27 @@ def test_an_effect_that_no_process_could_read_is_refused_with_the_way_out() -> N
         packed(Local)
     kind: type[Effect] = unpacked(packed(ViscousDrag))
     assert kind is ViscousDrag
+
+
+def refusing(shared: int, item: int) -> int:
+    refuse(f"law {item}", ZeroDivisionError(f"{shared}"))
+    return item
+
+
+def test_what_laws_raised_in_processes_is_told(team: Team) -> None:
+    assert team.map(refusing, 7, [1, 2, 3]) == [1, 2, 3]
+    assert team.refused == {f"law {number}": "ZeroDivisionError: 7" for number in (1, 2, 3)}
+    [said] = refused_words(team.refused | {"law 4": "LawError: it is the fourth"})
+    assert "law 1 (ZeroDivisionError: 7)" in said
+    assert "and 1 more" in said
+    assert refused_words({}) == ()
+
+
+def test_what_laws_raised_before_a_team_is_not_told_of_it() -> None:
+    refuse("an old law", ZeroDivisionError("long ago"))
+    with Team(1) as alone:
+        assert alone.map(refusing, 7, [1]) == [1]
+    assert alone.refused == {"law 1": "ZeroDivisionError: 7"}
 
 
 def test_a_script_without_its_main_line_is_told_so(tmp_path: Path) -> None:
