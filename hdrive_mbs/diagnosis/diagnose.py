@@ -143,7 +143,6 @@ def diagnose(
         *left_out(tried, evidence.single, step),
         *ringing_words(trials),
         *team.lost,
-        *refused_words(team.refused),
         *(() if journal is None else journal.said),
         *reported,
     )
@@ -163,7 +162,7 @@ def diagnose(
     return dataclasses.replace(
         found,
         notes=(*found.notes, *notes),
-        warnings=(*found.warnings, *warnings, *deadline.said()),
+        warnings=(*found.warnings, *warnings, *deadline.said(), *refused_words(team.refused)),
         inputs=driven,
         files=files,
         settings=settings,

@@ -166,8 +166,6 @@ class Lines:
         """As ``_compiled``; None for a cause whose law raises too, which is noted."""
         try:
             return self._compiled(network, k)
-        except HdriveError:
-            raise
         except Exception as error:
             _refuse(hypothesis, error)
             return None
@@ -223,16 +221,14 @@ def _network(hypothesis: Hypothesis, scene: Scene, point: FloatArray) -> Network
         return hypothesis.scene(scene, point, to_run=True).network()
     except (ParameterError, LawError, PlaceError):  # PlaceError: a cause found elsewhere that does not go with this place
         return None
-    except HdriveError:
-        raise
     except Exception as error:
         _refuse(hypothesis, error)
         return None
 
 
 def _refuse(hypothesis: Hypothesis, error: Exception) -> None:
-    """Note what the law of a cause raised; raises it where there is no cause, or no memory."""
-    if not hypothesis.added or isinstance(error, MemoryError):
+    """Note what the law of a cause raised; raises it where there is no cause, or where it is no fault of a law."""
+    if not hypothesis.added or isinstance(error, HdriveError | MemoryError):
         raise error
     refuse(hypothesis.label, error)
 

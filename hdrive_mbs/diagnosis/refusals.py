@@ -29,9 +29,12 @@ def taken() -> dict[str, str]:
 
 
 def refused_words(refused: dict[str, str]) -> tuple[str, ...]:
-    """Label -> error, in a note."""
+    """Label -> error, as a warning: a parameter may lie where its law could not be asked, whatever its interval says."""
     if not refused:
         return ()
     named = "; ".join(f"{label} ({error})" for label, error in list(refused.items())[:LISTED])
     more = "" if len(refused) <= LISTED else f"; and {len(refused) - LISTED} more"
-    return (f"A law raised at values that the search came to, which were passed over: {named}{more}. Mend it, or leave it out.",)
+    return (
+        f"A law raised at values that the search came to, which were passed over: {named}{more}. What it explains may lie"
+        " there, outside the interval that is given. Mend it, or leave it out.",
+    )

@@ -556,7 +556,7 @@ def test_a_law_that_raises_in_the_search_is_named_and_the_search_goes_on() -> No
     found = run(kinds=(RaisesWhereItIsLarge, KinematicError), given=records((_Own(size=0.05), "motor")))
     assert found.causes[0].at == "motor"
     assert found.causes[0].parameters[0].value == pytest.approx(0.03, rel=1e-3)  # as far as it can be run
-    [said] = [note for note in found.notes if "A law raised" in note]
+    [said] = [text for text in found.warnings if "A law raised" in text]
     assert "RaisesWhereItIsLarge at motor (TraceError: the law cannot be recorded (ZeroDivisionError: no room for so much))" in said
     assert "passed over" in said
     assert "A law raised at values" in report_text(found)
