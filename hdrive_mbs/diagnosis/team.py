@@ -10,7 +10,7 @@ processes, at the end of a stage or in one with a single item, these run their l
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from multiprocessing import connection
 from pathlib import Path
 from types import TracebackType
@@ -102,9 +102,10 @@ class Team:
                 if found is not None:
                     answers[k] = found[0]
 
-        def finished(k: int, answer: Answer) -> None:
+        def finished(k: int, answer: Answer, refused: Mapping[str, str]) -> None:
             answers[k] = answer
-            if self.journal is not None:
+            self.refused |= refused
+            if self.journal is not None and not refused:  # else it is worked out again, so that a diagnosis that goes on warns too
                 self.journal.write(keys[k], answer)
             said(len(answers), len(items))
 
@@ -114,8 +115,7 @@ class Team:
             for k in left:
                 with allowed(lambda: self._share(1 + self._apart)):
                     answer = function(shared, items[k])
-                self.refused |= taken()
-                finished(k, answer)
+                finished(k, answer, taken())
         else:
             self._side_by_side(function, shared, {k: items[k] for k in left}, finished)
         return [answers[k] for k in range(len(items))]
@@ -189,8 +189,8 @@ class Team:
         path.write_bytes(packed(shared))
         return path
 
-    def _read(self, worker: Worker) -> tuple[bool, Any] | None:
-        """The next message of a process, if it is an answer to an item: whether it is good, and the answer.
+    def _read(self, worker: Worker) -> tuple[bool, Any, Mapping[str, str]] | None:
+        """The next message of a process, if it is an answer to an item: whether it is good, the answer, and what laws raised meanwhile.
 
         A process that dies at work for later is gone, and that work waits until it is asked for.
 
@@ -203,23 +203,27 @@ class Team:
                 raise
             self.lost.append(f"{self._died(worker, worker.apart.item)} This process takes over when it is needed.")
             return None
-        self.refused |= refused
         if not worker.ready:
             assert answer == READY
             worker.ready = True
             return None
         if worker.apart is None:
-            return good, answer
+            return good, answer, refused
         later, worker.apart = worker.apart, None
         later.came(good, answer)
+        self.refused |= refused
         if later.file is not None:
             later.file.unlink(missing_ok=True)
-        if good and self.journal is not None:
+        if good and self.journal is not None and not refused:
             self.journal.write(self._key(later), answer)
         return None
 
     def _side_by_side(
-        self, function: Callable[[Any, Item], Answer], shared: Any, items: dict[int, Item], finished: Callable[[int, Answer], None]
+        self,
+        function: Callable[[Any, Item], Answer],
+        shared: Any,
+        items: dict[int, Item],
+        finished: Callable[[int, Answer, Mapping[str, str]], None],
     ) -> None:
         path = self._shared(shared)
         self._fill()
@@ -250,12 +254,12 @@ class Team:
                         self._running.append(Worker.begun(self._threads))
                         continue
                     if found is not None:
-                        good, answer = found
+                        good, answer, refused = found
                         if not good:
                             raise answer
                         assert worker.at is not None
                         number, worker.at = worker.at, None
-                        finished(number, answer)
+                        finished(number, answer, refused)
                     if worker in self._running:
                         give(worker)
                     else:

@@ -357,6 +357,14 @@ def test_what_laws_raised_in_processes_is_told(team: Team) -> None:
     assert refused_words({}) == ()
 
 
+@pytest.mark.parametrize("workers", [1, 2])
+def test_what_laws_raised_is_told_again_where_a_diagnosis_goes_on(tmp_path: Path, workers: int) -> None:
+    for _ in range(2):
+        with Team(workers, Journal(tmp_path, {})) as team:
+            assert team.map(refusing, 7, [1, 2]) == [1, 2]
+        assert set(team.refused) == {"law 1", "law 2"}
+
+
 def test_what_laws_raised_before_a_team_is_not_told_of_it() -> None:
     refuse("an old law", ZeroDivisionError("long ago"))
     with Team(1) as alone:
