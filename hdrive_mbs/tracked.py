@@ -8,8 +8,10 @@ stays what it was: who uses this holds one other set of numbers against what is 
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -57,27 +59,26 @@ class Tape:
         self._outcomes[ufunc, tuple([_argument(item) for item in arguments])] = outcome
         return outcome
 
-    def again(self, inputs: Mapping[str, FloatArray], wanted: Sequence[float]) -> tuple[FloatArray, Mask]:
-        """Wanted numbers for other inputs, each of shape (n,): shape (n, wanted), and where all comparisons come out as before, (n,)."""
-        count = len(next(iter(inputs.values())))
-        known: dict[int, FloatArray] = {place: inputs[name] for name, place in self._inputs.items()}
+    def replay(self, wanted: Sequence[float]) -> Replay:
+        """What it takes to have wanted numbers again, and the comparisons as they came out until now."""
         needed = self._needed([_argument(item) for item in wanted])
+        slots: dict[Argument, int] = {(True, place): place for place in range(len(self._steps))}
+        plain_ones: list[float] = []
 
-        def read(argument: Argument) -> Any:
-            tracked, number = argument
-            return known[int(number)] if tracked else number
+        def slot(argument: Argument) -> int:
+            if argument not in slots:
+                slots[argument] = len(slots)
+                plain_ones.append(argument[1])
+            return slots[argument]
 
-        with np.errstate(all="ignore"):
-            for place, (ufunc, arguments) in enumerate(self._steps):
-                if ufunc is not None and place in needed:
-                    known[place] = np.asarray(ufunc(*(read(item) for item in arguments)), float)
-            holds = np.ones(count, bool)
-            for (ufunc, arguments), outcome in self._outcomes.items():
-                holds &= ufunc(*(read(item) for item in arguments)) == outcome
-        found = np.empty((count, len(wanted)))
-        for k, item in enumerate(wanted):
-            found[:, k] = read(_argument(item))
-        return found, holds
+        steps = [
+            (place, ufunc, tuple([slot(item) for item in arguments]))
+            for place, (ufunc, arguments) in enumerate(self._steps)
+            if ufunc is not None and place in needed
+        ]
+        outcomes = [(ufunc, tuple([slot(item) for item in arguments]), outcome) for (ufunc, arguments), outcome in self._outcomes.items()]
+        asked = [slot(_argument(item)) for item in wanted]
+        return Replay(dict(self._inputs), len(self._steps), tuple(plain_ones), steps, outcomes, asked)
 
     def _needed(self, wanted: Sequence[Argument]) -> set[int]:
         """Steps that wanted numbers and comparisons rest on."""
@@ -90,6 +91,40 @@ class Tape:
                 found.add(place)
                 open_ += [int(number) for tracked, number in self._steps[place][1] if tracked]
         return found
+
+
+@dataclass(frozen=True, eq=False)
+class Replay:
+    """Steps of a tape as far as wanted numbers and comparisons rest on them.  Every number has a slot: first those of the tape, then plain
+    ones.
+
+    inputs : name -> slot;  tracked : slots of the tape;  plain_ones : numbers in the slots behind these
+    steps : (slot, what is computed, slots of its arguments);  outcomes : (what is compared, slots, how it came out);  asked : slots
+    """
+
+    inputs: Mapping[str, int]
+    tracked: int
+    plain_ones: tuple[float, ...]
+    steps: Sequence[tuple[int, np.ufunc, tuple[int, ...]]]
+    outcomes: Sequence[tuple[np.ufunc, tuple[int, ...], bool]]
+    asked: Sequence[int]
+
+    def again(self, inputs: Mapping[str, FloatArray]) -> tuple[FloatArray, Mask]:
+        """Wanted numbers for other inputs, each of shape (n,): shape (n, wanted), and where all comparisons come out as before, (n,)."""
+        count = len(next(iter(inputs.values())))
+        known: list[Any] = [None] * self.tracked + list(self.plain_ones)
+        for name, slot in self.inputs.items():
+            known[slot] = inputs[name]
+        with np.errstate(all="ignore"):
+            for slot, ufunc, arguments in self.steps:
+                known[slot] = ufunc(*[known[k] for k in arguments])
+            holds = np.ones(count, bool)
+            for ufunc, arguments, outcome in self.outcomes:
+                holds &= ufunc(*[known[k] for k in arguments]) == outcome
+        found = np.empty((count, len(self.asked)))
+        for k, slot in enumerate(self.asked):
+            found[:, k] = known[slot]
+        return found, holds
 
 
 def _argument(value: float) -> Argument:
@@ -255,13 +290,45 @@ def _is_known(value: Any) -> bool:
     return _is_number(value) or isinstance(value, (np.ndarray, np.bool_, list, tuple))
 
 
+def sine(value: float) -> float:
+    """Of a number that may be tracked, where ``math.sin`` would take it out of sight."""
+    return np.sin(value) if type(value) is Tracked else math.sin(value)
+
+
+def cosine(value: float) -> float:
+    """Likewise."""
+    return np.cos(value) if type(value) is Tracked else math.cos(value)
+
+
 def _binary(plain_one: Callable[[Any, Any], Any], ufunc: np.ufunc, a: Any, b: Any) -> Any:
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         return plain_one(plain(a) if type(a) is Tracked else a, plain(b) if type(b) is Tracked else b)
     if not (_is_number(a) and _is_number(b)):
         return NotImplemented
+    known = _whatever_comes(plain_one, a, b)
+    if known is not None:
+        return known
     tape = a.tape if type(a) is Tracked else b.tape
     return tape.computed(float(plain_one(plain(a), plain(b))), ufunc, (a, b))
+
+
+def _whatever_comes(plain_one: Callable[[Any, Any], Any], a: Any, b: Any) -> float | None:
+    """What comes of a tracked and a plain number whatever the tracked one is, as long as it is finite; None where it depends on it.
+
+    As plain numbers do: a zero times anything is a zero, and neither a zero that is added nor a one that multiplies changes anything.
+    """
+    tracked, other = (a, b) if type(a) is Tracked else (b, a)
+    if type(other) is Tracked:
+        return None
+    if plain_one is operator.mul:
+        return 0.0 if other == 0.0 else tracked if other == 1.0 else None
+    if plain_one is operator.add:
+        return tracked if other == 0.0 else None
+    if tracked is a and plain_one is operator.sub:
+        return tracked if other == 0.0 else None
+    if tracked is a and plain_one is operator.truediv:
+        return tracked if other == 1.0 else None
+    return None
 
 
 def _compared(plain_one: Callable[[Any, Any], bool], ufunc: np.ufunc, a: Tracked, b: Any) -> Any:

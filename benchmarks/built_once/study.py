@@ -28,14 +28,14 @@ class _Bench:
     """A bench with what a run of it takes.
 
     bench : with scene, tolerances and channels;  every, step : sample time and step [s]
-    held : whether templates hold all but the numbers of the law
+    large : whether its templates are of rotor lines
     """
 
     bench: Any
     samples: int
     every: float
     step: float
-    held: bool
+    large: bool
 
     def line(self, network: Network) -> CompiledLine:
         """The network with the channels that are measured."""
@@ -48,8 +48,8 @@ class _Bench:
 
 
 BENCHES: Mapping[str, Callable[[], _Bench]] = {
-    "drive": lambda: _Bench(drive_bench.bench(), 18_001, 5e-4, 2.5e-4, held=False),
-    "rotor": lambda: _Bench(rotor_bench.bench(), 16_801, rotor_bench.SAMPLE_TIME, rotor_bench.STEP, held=True),
+    "drive": lambda: _Bench(drive_bench.bench(), 18_001, 5e-4, 2.5e-4, large=False),
+    "rotor": lambda: _Bench(rotor_bench.bench(), 16_801, rotor_bench.SAMPLE_TIME, rotor_bench.STEP, large=True),
 }
 """Runs as long as a record, in the steps that a diagnosis of it takes."""
 
@@ -63,24 +63,23 @@ def study(*, quick: bool, repeats: int) -> dict[str, Any]:
         factors = factors_of(on.bench)
         for candidate in candidates(on.bench.scene)[:: 8 if quick else 1]:
             hypothesis = Hypothesis(factors, candidate.starts[:1])
-            points = _points(hypothesis, len(factors) if on.held else 0)
+            points = _points(hypothesis)
             measured = _measured(on, hypothesis, points, repeats)
             rows.append({"bench": name, "law": candidate.kind.__name__, "place": candidate.at, **measured})
     return {"about": about(), "repeats": repeats, "sets": SETS, "pays": PAYS, "rows": rows}
 
 
-def _points(hypothesis: Hypothesis, first: int) -> list[np.ndarray]:
-    """About the start, with all coordinates from a first one on moved."""
+def _points(hypothesis: Hypothesis) -> list[np.ndarray]:
+    """About the start, with all coordinates moved."""
     rng = np.random.default_rng(7)
     start = hypothesis.start()
-    free = np.arange(len(start)) >= first
-    return [hypothesis.clipped(start + 0.5 * free * rng.standard_normal(len(start))) for _ in range(SETS)]
+    return [hypothesis.clipped(start + 0.5 * rng.standard_normal(len(start))) for _ in range(SETS)]
 
 
 def _measured(on: _Bench, hypothesis: Hypothesis, points: list[np.ndarray], repeats: int) -> dict[str, Any]:
     scene = on.bench.scene
     begun = time.process_time()
-    template = Templates(held=on.held).of(hypothesis, scene, points[0], "bench", on.line, asked=SETS)
+    template = Templates(large=on.large).of(hypothesis, scene, points[0], "bench", on.line, asked=SETS)
     made = time.process_time() - begun
     building, taking = [], []
     for _ in range(repeats):

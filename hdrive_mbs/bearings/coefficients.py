@@ -15,6 +15,7 @@ import numpy.typing as npt
 from hdrive_mbs.bearings.law import DIRECTIONS, FloatArray
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.quantities import Described
+from hdrive_mbs.tracked_arrays import array_of
 
 PLACES = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yx": (1, 0), "psi": (3, 3), "theta": (4, 4)}
 """Entry of the matrix -> its row and column."""
@@ -70,10 +71,10 @@ def _check_spin(where: str, matrix: FloatArray) -> None:
 def matrix_of(law: Described, prefix: str) -> FloatArray:
     """The 6x6 matrix of the fields with this prefix."""
     couplings = getattr(law, f"{prefix}_couplings")
-    matrix = np.zeros((6, 6)) if couplings is None else np.reshape(np.array(couplings), (6, 6))
+    matrix: FloatArray = np.full((6, 6), 0.0, object) if couplings is None else np.reshape(np.array(couplings, object), (6, 6))
     for entry, place in PLACES.items():
         matrix[place] = getattr(law, f"{prefix}_{entry}") or 0.0
-    return matrix
+    return array_of(matrix)
 
 
 def fields_of(owner: str, prefix: str, matrix: npt.ArrayLike) -> dict[str, Any]:

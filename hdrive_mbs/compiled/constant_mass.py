@@ -7,7 +7,7 @@ multiplication, and of a line of n stations every forward and backward step take
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -16,6 +16,8 @@ import numpy.typing as npt
 from hdrive_mbs.compiled.groups import groups
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.expression import Value
+from hdrive_mbs.tracked import Tracked, plain
+from hdrive_mbs.tracked_arrays import is_tracked, pattern
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -41,8 +43,14 @@ class _Factor:
 
 @dataclass(frozen=True, eq=False)
 class _Block:
+    """A part of a mass matrix over named coordinates in the order of its factor.
+
+    known : the factor of its plain numbers, where entries and inverse of the other one are tracked
+    """
+
     names: tuple[str, ...]
     factor: _Factor
+    known: _Factor
 
 
 class ConstantMass:
@@ -50,16 +58,17 @@ class ConstantMass:
 
     def __init__(self, names: Sequence[str], matrix: FloatArray) -> None:
         self.names = tuple(names)
-        self._blocks = [self._block(at, matrix) for at in groups((matrix != 0.0) | np.eye(len(matrix), dtype=bool))]
+        self._blocks = [self._block(at, matrix) for at in groups(pattern(matrix) | np.eye(len(matrix), dtype=bool))]
 
     def _block(self, at: Sequence[int], matrix: FloatArray) -> _Block:
-        part = matrix[at[0], at[0]] if len(at) == 1 else matrix[np.array(at)[:, None], at]
-        factor = _factor(len(at), part.tobytes())
-        if factor is None:
+        part = matrix[np.array(at)[:, None], at]
+        known = _factor(len(at), np.asarray(part, float).tobytes())
+        if known is None:
             raise ParameterError(
                 f"The masses of {', '.join(self.names[k] for k in at)} are not positive: give each of these places mass and inertia."
             )
-        return _Block(tuple([self.names[at[k]] for k in factor.order]), factor)
+        names = tuple([self.names[at[k]] for k in known.order])
+        return _Block(names, _tracked(known, part) if is_tracked(part) else known, known)
 
     def solve(self, forces: Mapping[str, Value]) -> dict[str, Value]:
         """Accelerations of all coordinates; a missing force is zero."""
@@ -84,8 +93,13 @@ class ConstantMass:
         found: dict[str, float] = {}
         for block in self._blocks:
             given = [force.get(name, 0.0) for name in block.names]
-            if any(given):
-                found |= {block.names[k]: value for k, value in _column(block.factor, tuple(given))}
+            if not any(given):
+                continue
+            kept = [(block.names[k], value) for k, value in _column(block.known, tuple([plain(value) for value in given]))]
+            if block.factor is not block.known or any(type(value) is Tracked for value in given):
+                solved = self.solve(dict(zip(block.names, given, strict=True)))
+                kept = [(name, solved[name]) for name, _ in kept]
+            found |= dict(kept)
         return found
 
 
@@ -108,6 +122,27 @@ def _factor(size: int, entries: bytes) -> _Factor | None:
     below = tuple(tuple((j, float(lower[i, j])) for j in np.flatnonzero(lower[i, :i]).tolist()) for i in range(size))
     right = tuple(tuple((j, float(lower[j, i])) for j in np.flatnonzero(lower[:, i]).tolist() if j > i) for i in range(size))
     return _Factor(tuple(order.tolist()), below, right, tuple(inverse.tolist()), lower / np.sqrt(inverse))
+
+
+def _tracked(factor: _Factor, matrix: FloatArray) -> _Factor:
+    """The factor of a matrix with tracked numbers from that of its plain ones: the same entries, worked out one by one."""
+    entries: dict[tuple[int, int], float] = {}
+    pivots: list[float] = []
+    for i, row in enumerate(factor.below):
+        left: dict[int, float] = {}  # entries of the row times their pivots
+        for j, _ in row:
+            value = matrix.item(factor.order[i], factor.order[j])
+            for k, part in left.items():
+                if (j, k) in entries:
+                    value = value - part * entries[j, k]
+            left[j], entries[i, j] = value, value / pivots[j]
+        pivot = matrix.item(factor.order[i], factor.order[i])
+        for j, value in left.items():
+            pivot = pivot - value * entries[i, j]
+        pivots.append(pivot)
+    below = tuple(tuple((j, entries[i, j]) for j, _ in row) for i, row in enumerate(factor.below))
+    right = tuple(tuple((j, entries[j, i]) for j, _ in column) for i, column in enumerate(factor.right))
+    return replace(factor, below=below, right=right, inverse=tuple(1.0 / pivot for pivot in pivots))
 
 
 def _cuthill_mckee(matrix: FloatArray) -> npt.NDArray[np.intp]:

@@ -16,6 +16,7 @@ from hdrive_mbs.network.elements import AppliedTorque, StateRate
 from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import recording_moment
 from hdrive_mbs.network.network import Motion, Network
+from hdrive_mbs.tracked_arrays import pattern
 
 ROUNDING = 1e-12
 """Initial values so much smaller than the largest one count as zero: what solving for a static deflection leaves."""
@@ -53,7 +54,7 @@ def idle_coordinates(network: Network, initial: Mapping[str, float] | None = Non
             moved |= {x, y, psi, theta}
     for element in network.elements:
         if isinstance(element, MatrixElement):
-            matrix = (element.mass != 0.0) | (element.damping != 0.0) | (element.stiffness != 0.0)
+            matrix = pattern(element.mass) | pattern(element.damping) | pattern(element.stiffness)
             for at in groups(matrix):
                 join(element.coordinates[k] for k in at)
         elif isinstance(element, Gyroscope):

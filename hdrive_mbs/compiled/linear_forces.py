@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -21,6 +21,8 @@ from hdrive_mbs.compiled.springs import NEGLIGIBLE, Spring, springs_of
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment
+from hdrive_mbs.tracked import plain
+from hdrive_mbs.tracked_arrays import is_tracked, proportions
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -99,7 +101,7 @@ def linear_forces(elements: Sequence[MatrixElement], moment: Moment, others: Map
     terms = _Terms({name: [value] for name, value in others.items()}, {})
     for element in elements:
         names = element.coordinates
-        for share in _shares(len(names), _written(element.stiffness), _written(element.damping)):
+        for share in _shares_of(element.stiffness, element.damping):
             values = moment.angles if share.is_stiffness else moment.speeds
             for i, j, entry in share.entries:
                 terms.resist(names[i], abs(entry) * values[names[j]], positive=entry > 0.0)
@@ -119,6 +121,28 @@ def linear_forces(elements: Sequence[MatrixElement], moment: Moment, others: Map
         for value in terms.subtracted.get(name, []):
             total[name] = total[name] - value
     return total
+
+
+def _shares_of(stiffness: FloatArray, damping: FloatArray) -> tuple[_Share, ...]:
+    found = _shares(len(stiffness), _written(stiffness), _written(damping))
+    if not (is_tracked(stiffness) or is_tracked(damping)):
+        return found
+    return tuple([_tracked(share, stiffness if share.is_stiffness else damping) for share in found])
+
+
+def _tracked(share: _Share, matrix: FloatArray) -> _Share:
+    """A share with the tracked numbers of its matrix.
+
+    Springs of parts that are multiples of each other differ in stiffness alone: it goes with the first entry of the part, as all others
+    do.
+    """
+    entries = tuple([(i, j, matrix.item(i, j)) for i, j, _ in share.entries])
+    if not share.springs:
+        return replace(share, entries=entries)
+    at = np.array(sorted({place for _, along in share.springs for place, _ in along.factors}))
+    first = matrix.item(at[0], at[0])
+    proportions(matrix[at[:, None], at], first)
+    return replace(share, springs=tuple([((stiffness / plain(first)) * first, along) for stiffness, along in share.springs]))
 
 
 def _written(matrix: FloatArray) -> bytes:

@@ -37,7 +37,8 @@ from hdrive_mbs.expression import Value
 from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Network, Rotor
-from hdrive_mbs.network.rigid_motion import mass_matrix
+from hdrive_mbs.network.rigid_motion import mass_at_rest
+from hdrive_mbs.tracked_arrays import added_at, array_of, pattern
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -80,8 +81,7 @@ def coupled_accelerations(network: Network, moment: Moment) -> dict[str, Value]:
     mass = _selected(names, matrix, [name for name in names if name not in turning])
     rotors = _spinning_rotors(network, mass)
     for part in rotors:
-        at = names.index(part.rotor.coordinates[5])
-        matrix[at, at] -= part.carried
+        matrix = added_at(matrix, np.array([names.index(part.rotor.coordinates[5])]), array_of([[-part.carried]]))
     forces = _forces(network, moment)
     rates = {state.name: forces.pop(state.name, 0.0) for state in network.states}
     found = mass.solve(forces)
@@ -94,7 +94,7 @@ def coupled_accelerations(network: Network, moment: Moment) -> dict[str, Value]:
     for part, phase in zip(rotors, phases, strict=True):
         spin = part.rotor.coordinates[5]
         at = names.index(spin)
-        found[spin] = found[spin] + found[spin] * _tilted(part, phase, moment, float(matrix[at, at]))
+        found[spin] = found[spin] + found[spin] * _tilted(part, phase, moment, matrix.item(at, at))
         _add_shaking(part, phase, moment, part.rotor.sense * found[spin], late)
     for name, value in late.items():
         found[name] = found[name] + value
@@ -107,12 +107,12 @@ def _masses(network: Network) -> tuple[list[str], FloatArray, list[str]]:
     index = {name: k for k, name in enumerate(names)}
     matrix = network.constant_mass.copy()
     for rotor in network.rotors:
-        kept = [k for k, name in enumerate(rotor.coordinates) if name in index]
-        at = np.array([index[rotor.coordinates[k]] for k in kept])
-        matrix[at[:, None], at] += mass_matrix(rotor.body.balanced(), [0.0] * 6)[np.array(kept)[:, None], kept]
+        kept = np.array([k for k, name in enumerate(rotor.coordinates) if name in index], int)
+        at = np.array([index[rotor.coordinates[k]] for k in kept], int)
+        matrix = added_at(matrix, at, mass_at_rest(rotor.body.balanced())[kept[:, None], kept])
     spins = {rotor.coordinates[5]: rotor.name for rotor in network.rotors}
     turning: list[str] = []
-    for group in groups(matrix != 0.0):
+    for group in groups(pattern(matrix)):
         members = [names[k] for k in group]
         mine = [spins[name] for name in members if name in spins]
         if mine:
@@ -144,10 +144,10 @@ def _spinning_rotors(network: Network, mass: ConstantMass) -> list[_Spinning]:
                 "Give it less tilt or eccentricity, or simulate it on the engine."
             )
         x, y, _, psi, theta, _ = rotor.coordinates
-        s, j = body.static_unbalance, body.product_unbalance
+        sx, sy, jx, jy = body.unbalance  # S = sx + i sy and J = jx + i jy
         # forces of A + i B; b has those of -i (A + i B)
-        cosine = {x: s.real, y: s.imag, psi: j.imag, theta: -j.real}
-        sine = {x: -s.imag, y: s.real, psi: j.real, theta: j.imag}
+        cosine = {x: sx, y: sy, psi: jy, theta: -jx}
+        sine = {x: -sy, y: sx, psi: jx, theta: jy}
         cosine, sine = ({name: value for name, value in push.items() if name in known} for push in (cosine, sine))
         columns = mass.column(cosine), mass.column(sine)
         carried = 0.5 * (_dot(cosine, columns[0]) + _dot(sine, columns[1]))
@@ -208,11 +208,11 @@ def _taken(part: _Spinning, phase: _Phase, moment: Moment, lateral: Mapping[str,
     """Torque that lateral accelerations take from a spin that does not speed up, true sense:  b.g + Jp (theta psi'' + psi' theta')."""
     x, y, _, psi, theta, spin = part.rotor.coordinates
     body = part.rotor.body
-    s, j = body.static_unbalance, body.product_unbalance
+    sx, sy, jx, jy = body.unbalance
     gx, gy, gpsi, gtheta = (lateral.get(name, 0.0) for name in (x, y, psi, theta))
     # b.g = Re((S (gy + i gx) + J (gpsi - i gtheta)) exp(i phi))
-    taken = phase.cosine * (s.real * gy - s.imag * gx + j.real * gpsi + j.imag * gtheta)
-    taken = taken - phase.sine * (s.imag * gy + s.real * gx + j.imag * gpsi - j.real * gtheta)
+    taken = phase.cosine * (sx * gy - sy * gx + jx * gpsi + jy * gtheta)
+    taken = taken - phase.sine * (sy * gy + sx * gx + jy * gpsi - jx * gtheta)
     shaken = part.cosine.get(psi, 0.0) * phase.cosine + part.sine.get(psi, 0.0) * phase.sine
     full = gpsi + moment.speed(spin) * moment.speed(spin) * shaken
     return taken + body.polar * (moment.angle(theta) * full + moment.speed(psi) * moment.speed(theta))

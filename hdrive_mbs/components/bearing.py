@@ -21,6 +21,7 @@ from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.rigid_mass import RigidMass
 from hdrive_mbs.network.station import Station
 from hdrive_mbs.quantities import option, parameter
+from hdrive_mbs.tracked_arrays import array_of, as_array, congruent, scaled
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -101,7 +102,7 @@ def add_housing(name: str, draft: Draft, housing: Housing | None) -> tuple[str, 
     ):
         coordinate = draft.add_coordinate(f"{name}.housing.{key}", inertia=housing.mass, unit="m", doc=f"housing of {name} in {key}")
         names.append(coordinate)
-        draft.add_matrix(f"{name}.foundation_{key}", (), (coordinate,), stiffness=np.array([[stiffness]]), damping=np.array([[damping]]))
+        draft.add_matrix(f"{name}.foundation_{key}", (), (coordinate,), stiffness=array_of([[stiffness]]), damping=array_of([[damping]]))
         if power != 0.0:
             draft.add_relative_torque(f"{name}.foundation_{key}_power", {coordinate: 1.0}, power_law(power, int(housing.power)))
     return tuple(names)
@@ -129,9 +130,9 @@ def add_housing_across(name: str, draft: Draft, station: Station, housing: Housi
             f"{name}.foundation_{key}",
             (station,),
             (across,),
-            mass=housing.mass * square,
-            stiffness=stiffness * square,
-            damping=damping * square,
+            mass=scaled(housing.mass, square),
+            stiffness=scaled(stiffness, square),
+            damping=scaled(damping, square),
         )
         factors = {**stretches[key], across: -1.0}
         if power != 0.0:
@@ -148,7 +149,7 @@ def power_law(factor: float, exponent: int) -> Torque:
 
 def add_bearing(name: str, draft: Draft, station: Station, law: BearingLaw, stretches: Mapping[str, Mapping[str, float]]) -> BearingDraft:
     """Matrices and forces of a law along its six stretches, and the channels of its force on the housing."""
-    stiffness, damping = np.asarray(law.stiffness_matrix(), float), np.asarray(law.damping_matrix(), float)
+    stiffness, damping = as_array(law.stiffness_matrix()), as_array(law.damping_matrix())
     extra = tuple(dict.fromkeys(c for factors in stretches.values() for c in factors if c not in station.names))
     names = (*station.names[:5], *extra)
     rows = np.array([[0.0 if c == "ground" else stretches[d].get(c, 0.0) for c in names] for d in DIRECTIONS])
@@ -156,7 +157,7 @@ def add_bearing(name: str, draft: Draft, station: Station, law: BearingLaw, stre
     if any(matrix[5].any() or matrix[:, 5].any() for matrix in (stiffness, damping)):
         raise LawError(f"{name!r}: the matrices of {type(law).__name__} have entries for phi; torque about the axis belongs into forces().")
     if stiffness.any() or damping.any():
-        draft.add_coordinate_matrix(f"{name}.coefficients", names, stiffness=rows.T @ stiffness @ rows, damping=rows.T @ damping @ rows)
+        draft.add_coordinate_matrix(f"{name}.coefficients", names, stiffness=congruent(stiffness, rows), damping=congruent(damping, rows))
     return add_law(name, draft, law, stretches)
 
 
@@ -167,7 +168,7 @@ def add_law(
 
     offset : what the channels add to the stretch of each direction [m, rad]
     """
-    stiffness, damping = np.asarray(law.stiffness_matrix(), float), np.asarray(law.damping_matrix(), float)
+    stiffness, damping = as_array(law.stiffness_matrix()), as_array(law.damping_matrix())
 
     def forces(s: Mapping[str, Value], v: Mapping[str, Value]) -> Mapping[str, Value]:
         return law.forces(_relative(s, v))

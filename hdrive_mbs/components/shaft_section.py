@@ -21,6 +21,7 @@ from hdrive_mbs.network.station import Station
 from hdrive_mbs.quantities import option, parameter
 from hdrive_mbs.shafts.beam import Beam
 from hdrive_mbs.shafts.section_geometry import CircularSection
+from hdrive_mbs.tracked_arrays import has_tracked, scaled
 from hdrive_mbs.usual_values import DENSITY, DIAMETER, LENGTH, SHEAR_MODULUS, YOUNGS_MODULUS
 
 FloatArray = npt.NDArray[np.float64]
@@ -104,12 +105,15 @@ class ShaftSection(Component):
     def _add_element(self, name: str, draft: Draft, a: Station, b: Station) -> None:
         beam = self.beam(self.length / self.elements)
         stiffness, bending, mass = _matrices(beam, self.rotary_inertia)
-        damping = self.damping * stiffness + self.rotating_damping * bending
+        damping = scaled(self.damping, stiffness)
+        if self.rotating_damping > 0.0:
+            damping = damping + scaled(self.rotating_damping, bending)
         draft.add_matrix(f"{name}.beam", (a, b), stiffness=stiffness, damping=damping, mass=mass)
         draft.add_shaft(ShaftPiece(name, (a, b), beam.length, bending))
         if self.rotating_damping > 0.0:
             factor = self.rotating_damping
-            draft.add_element(Circulation.between(f"{name}.rotating_damping", a, b, factor * beam.circulatory(), factor * bending))
+            circulatory, dissipative = scaled(factor, beam.circulatory()), scaled(factor, bending)
+            draft.add_element(Circulation.between(f"{name}.rotating_damping", a, b, circulatory, dissipative))
         torsion = beam.shear_modulus * beam.polar_moment / beam.length
         sense = b.sense if not b.held else a.sense
         factors: dict[str, float] = {a.node: float(sense * a.sense)}
@@ -127,18 +131,28 @@ def _end_mass(section: ShaftSection) -> RigidMass:
     return RigidMass(0.0, (0.0, 0.0, 0.0), ((0.0,) * 3, (0.0,) * 3, (0.0, 0.0, polar)))
 
 
-@lru_cache(maxsize=KEPT)
 def _ends(section: ShaftSection) -> tuple[Flange, ...]:
+    return _made_ends(section) if has_tracked(section) else _kept_ends(section)
+
+
+def _made_ends(section: ShaftSection) -> tuple[Flange, ...]:
     end = Flange(name="a", lateral=True, mass=_end_mass(section), free=section.density > 0.0)
     return (end, replace(end, name="b", axial=section.length))
 
 
-@lru_cache(maxsize=KEPT)
 def _matrices(beam: Beam, rotary_inertia: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Stiffness without torsion, that of bending alone, and mass of a beam; not to be changed."""
+    return _made_matrices(beam, rotary_inertia) if has_tracked(beam) else _kept_matrices(beam, rotary_inertia)
+
+
+def _made_matrices(beam: Beam, rotary_inertia: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
     stiffness, bending, mass = beam.stiffness(), beam.bending_stiffness(), beam.mass(rotary_inertia=rotary_inertia)
     stiffness[SPINS, :] = 0.0
     stiffness[:, SPINS] = 0.0
     for matrix in (stiffness, bending, mass):
         matrix.setflags(write=False)
     return stiffness, bending, mass
+
+
+_kept_ends, _kept_matrices = lru_cache(maxsize=KEPT)(_made_ends), lru_cache(maxsize=KEPT)(_made_matrices)
+"""Of sections of plain numbers: to ask whether a tracked number equals another one is a comparison that is kept."""

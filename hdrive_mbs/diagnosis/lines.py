@@ -71,7 +71,8 @@ class Lines:
             parts = ((name, part, other.parts[name]) for other in others if other is not first for name, part in first.parts.items())
             self._inputs[family[0]] = sorted({path for name, a, b in parts for path in _differing(a, b, name)})
         self._known: dict[tuple[int, Structure], tuple[Inputs, Inputs] | None] = {}
-        self._templates = {held: Templates(held=held) for held in (False, True)}  # what is lateral has masses and stiffnesses in matrices
+        of_rotors = Templates(large=True), Templates(large=True, held=True)
+        self._templates = {False: (Templates(),), True: of_rotors}  # by whether the scene is lateral
 
     def at(self, hypothesis: Hypothesis, points: Sequence[FloatArray], skipped: Collection[int] = frozenset()) -> list[list[Start | None]]:
         """For each trial the line at each point; None where values do not go together, and for trials that are skipped."""
@@ -125,8 +126,12 @@ class Lines:
         self, k: int, hypothesis: Hypothesis, scene: Scene, points: Sequence[FloatArray], network: Callable[[int], Network | None]
     ) -> list[CompiledLine | None]:
         """Lines of a scene as trial k sees it: from templates where there are any, else each of its own network."""
-        templates = self._templates[scene.network().is_lateral]
-        found = templates.lines(hypothesis, scene, points, k, lambda made: self._compiled(made, k))
+        found: list[CompiledLine | None] = [None] * len(points)
+        for templates in self._templates[scene.network().is_lateral]:
+            missing = [number for number, line in enumerate(found) if line is None]
+            made = templates.lines(hypothesis, scene, [points[number] for number in missing], k, lambda made: self._compiled(made, k))
+            for number, line in zip(missing, made, strict=True):
+                found[number] = line
         return [self._line(network(number), k, hypothesis) if line is None else line for number, line in enumerate(found)]
 
     def _view(self, k: int) -> tuple[str, ...]:

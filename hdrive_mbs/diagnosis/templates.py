@@ -5,9 +5,9 @@ alone the equations are the same, and their constants follow from the numbers (t
 line that was built for other numbers before it is used, and again in its 2nd, 4th, 8th ... use; where it fails, or where a
 comparison in the making of the scene comes out otherwise, lines are built one by one.
 
-The masses and stiffnesses of a rotor line go through matrices, which numbers do not come out of as they went in.  Its templates
-hold all numbers but those of the effect that was added last, as looks from a fitted model do; they are made where that many lines
-with the same held numbers are asked for that it pays.
+A rotor line has many more numbers, and its templates are made where that many lines are asked for that it pays.  Where the law of an
+effect takes its numbers out of sight, or where masses and stiffnesses come out of a matrix otherwise, templates hold all numbers but those
+of the effect that was added last, as looks from a fitted model do.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from hdrive_mbs.compiled.program import Program
 from hdrive_mbs.diagnosis.hypothesis import FloatArray, Hypothesis
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.scene import Scene
-from hdrive_mbs.tracked import Tape, Tracked
+from hdrive_mbs.tracked import Replay, Tape, Tracked
 
 Compile = Callable[[Network], CompiledLine | None]
 
 SAME = 1e-11
 """Relative difference of constants that rounding may make."""
-KEPT, KEPT_HELD = 256, 8
-"""Templates that are kept, of those that hold numbers fewer: the next ones hold others."""
+KEPT, KEPT_LARGE = 256, 8
+"""Templates that are kept; of rotor lines, which are large and asked for one hypothesis after another, fewer."""
 PAYS = 6
-"""Lines with the same held numbers for which a template is made: it takes as long as two or three, and its checks as many."""
+"""Lines for which a template of a rotor line is made: it takes as long as two or three, and its checks as many."""
 GOLDEN = 0.6180339887498949
 
 
@@ -41,10 +41,10 @@ GOLDEN = 0.6180339887498949
 class Template:
     """A line recorded with tracked numbers.
 
-    paths : of the searched numbers;  uses : how often it was asked
+    replay : what its constants follow from;  paths : of the searched numbers;  uses : how often it was asked
     """
 
-    tape: Tape
+    replay: Replay
     line: CompiledLine
     paths: tuple[str, ...]
     uses: int = 0
@@ -53,7 +53,7 @@ class Template:
         """The line for each set of numbers by path; None where its making would go another way."""
         program = self.line.program
         inputs = {path: np.array([item[path] for item in values]) for path in self.paths}
-        found, holds = self.tape.again(inputs, program.numbers.found)
+        found, holds = self.replay.again(inputs)
         constants = program.numbers.constants(found)
         made: list[CompiledLine | None] = []
         for row, right in zip(constants, holds, strict=True):
@@ -68,10 +68,11 @@ class Templates:
     """Templates of the hypotheses that were asked for last.
 
     held : whether all numbers but those of the effect added last are held
+    large : whether they are of rotor lines: few are kept, and made where it pays
     """
 
-    def __init__(self, *, held: bool = False) -> None:
-        self._held, self._most = held, KEPT_HELD if held else KEPT
+    def __init__(self, *, held: bool = False, large: bool = False) -> None:
+        self._held, self._large = held, large
         self._kept: OrderedDict[Hashable, Template] = OrderedDict()
         self._asked: OrderedDict[Hashable, int] = OrderedDict()
         self._never: set[Hashable] = set()
@@ -110,14 +111,14 @@ class Templates:
         key = law, free.held(hypothesis.values(point, to_run=True))
         found = self._kept.get(key)
         if found is None:
-            if self._held and not self._is_worth_while(key, asked):
+            if self._large and not self._is_worth_while(key, asked):
                 return None
             found = _made(hypothesis, scene, point, compiled, free)
             if found is None:
                 self._never.add(law)
                 return None
             self._kept[key] = found
-            while len(self._kept) > self._most:
+            while len(self._kept) > (KEPT_LARGE if self._large else KEPT):
                 self._kept.popitem(last=False)
         self._kept.move_to_end(key)
         found.uses += 1
@@ -215,7 +216,7 @@ def _recorded(
         return None
     if line is None or tape.lost is not None or any(type(state.initial) is Tracked for state in line.network.states):
         return None
-    return Template(tape, line, tuple(path for path in values if path in free.paths))
+    return Template(tape.replay(line.program.numbers.found), line, tuple(path for path in values if path in free.paths))
 
 
 def _agrees(template: Template, hypothesis: Hypothesis, scene: Scene, point: FloatArray, compiled: Compile) -> bool | None:

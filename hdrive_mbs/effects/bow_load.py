@@ -25,10 +25,10 @@ def load_of(piece: ShaftPiece, shape: FloatArray) -> Load:
     """K q_0 of one piece: what holds it in a shape [x, y, z, psi, theta, phi] of end a, then end b, at its coordinates."""
     forces = piece.bending @ shape
     result: Load = {}
-    for row, force in enumerate(forces):
+    for row, force in enumerate(forces.tolist()):
         if force != 0.0:
             for name, factor in piece.stretch(np.eye(12)[row].tolist()).items():
-                result[name] = result.get(name, 0.0) + factor * float(force)
+                result[name] = result.get(name, 0.0) + factor * force
     return result
 
 

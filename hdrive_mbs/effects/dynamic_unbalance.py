@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -12,6 +11,7 @@ from hdrive_mbs.effects.added_unbalance import add_unbalance
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.quantities import parameter
+from hdrive_mbs.tracked import cosine, sine
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,4 +39,5 @@ class DynamicUnbalance(Effect):
     signature: ClassVar[str] = "vibration once per turn that grows with the square of speed, strongest where a rotor tilts"
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
-        add_unbalance(self, draft, place, static=0.0, couple=cmath.rect(self.couple, self.phase))
+        couple = self.couple * cosine(self.phase), self.couple * sine(self.phase)
+        add_unbalance(self, draft, place, static=(0.0, 0.0), couple=couple)

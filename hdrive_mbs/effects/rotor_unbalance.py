@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -12,6 +11,7 @@ from hdrive_mbs.effects.added_unbalance import add_unbalance
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.quantities import parameter
+from hdrive_mbs.tracked import cosine, sine
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,5 +38,5 @@ class RotorUnbalance(Effect):
     signature: ClassVar[str] = "vibration once per turn that grows with the square of speed and turns its phase at critical speeds"
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
-        static = cmath.rect(self.unbalance, self.phase)
-        add_unbalance(self, draft, place, static=static, couple=self.lever * static)
+        x, y = self.unbalance * cosine(self.phase), self.unbalance * sine(self.phase)
+        add_unbalance(self, draft, place, static=(x, y), couple=(self.lever * x, self.lever * y))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hdrive_mbs.network.bearing_draft import ShaftPiece
+from hdrive_mbs.tracked_arrays import largest, proportions
 
 _X, _Y = (0, 4, 6, 10), (1, 3, 7, 9)
 """Places of displacement and tilt at both ends in the 12-vector, in the plane (x, theta) and in the plane (y, -psi)."""
@@ -42,11 +43,12 @@ def moment_at(piece: ShaftPiece, share: float) -> tuple[BendingShape, float]:
     reciprocal theorem of Betti), so that it is met by h = z dM/dx_a - dM/dtheta_a.
     """
     plane = piece.bending[np.ix_(_X, _X)]
+    size = largest(plane[1])
+    held = proportions(plane[:2], size)
     place = share * piece.length  # no arrays from here on, which would not see that a share is tracked (tracked.py)
-    values = [place * force - moment for force, moment in zip(plane[0].tolist(), plane[1].tolist(), strict=True)]
-    size = float(np.max(np.abs(plane[1])))
-    stretches = {key: piece.stretch(row) for key, row in zip("xy", _rows([value / size for value in values]), strict=True)}
-    return BendingShape(stretches, size), place * values[0] - values[1]
+    values = [place * force - moment for force, moment in zip(held[0].tolist(), held[1].tolist(), strict=True)]
+    stretches = {key: piece.stretch(row) for key, row in zip("xy", _rows(values), strict=True)}
+    return BendingShape(stretches, size), size * (place * values[0] - values[1])
 
 
 def bent_shapes(piece: ShaftPiece) -> list[tuple[BendingShape, float]]:
@@ -56,8 +58,8 @@ def bent_shapes(piece: ShaftPiece) -> list[tuple[BendingShape, float]]:
     s_1 = x_b - x_a - L/2 (theta_a + theta_b), for both displace the ends in ways that store no energy together.  Read off its stiffness:
     with f_0, f_1 these factors over (x_a, theta_a, x_b, theta_b), K = k_0 f_0 f_0^T + k_1 f_1 f_1^T.
     """
-    plane, half = piece.bending[np.ix_(_X, _X)], 0.5 * piece.length
-    turned, sheared = 0.5 * (plane[1, 1] - plane[1, 3]) / half**2, plane[0, 0]
-    shapes = ((0.0, -half, 0.0, half), float(turned)), ((-1.0, -half, 1.0, -half), float(sheared))
+    plane, half = piece.bending[np.ix_(_X, _X)].tolist(), 0.5 * piece.length
+    turned, sheared = 0.5 * (plane[1][1] - plane[1][3]) / half**2, plane[0][0]
+    shapes = ((0.0, -half, 0.0, half), turned), ((-1.0, -half, 1.0, -half), sheared)
     pairs = ((dict(zip("xy", _rows(values), strict=True)), stiffness) for values, stiffness in shapes)
     return [(BendingShape({key: piece.stretch(row) for key, row in rows.items()}, 1.0), stiffness) for rows, stiffness in pairs]

@@ -16,6 +16,7 @@ from hdrive_mbs.errors import ParameterError, PlaceError
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.station import Station
 from hdrive_mbs.quantities import option, parameter
+from hdrive_mbs.tracked_arrays import congruent, largest, proportions
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -78,18 +79,18 @@ def _deflected(draft: Draft, place: str, station: Station, pins: dict[str, Stati
     stiffness = np.zeros((len(names),) * 2)
     for piece in draft.shafts:
         to = np.array([_row(piece.stretch(row.tolist()), names) for row in np.eye(12)])
-        stiffness += to.T @ piece.bending @ to
+        stiffness = stiffness + congruent(piece.bending, to)
     held = np.array([_row(pin.stretch(direction), names) for pin in pins.values()])
     pushed = _row(station.stretch(direction), names)
-    scale = float(np.max(np.abs(stiffness)))  # K q/scale = pushed - reactions, q = 0 at the pins
-    whole = np.block([[stiffness / scale, held.T], [held, np.zeros((len(held),) * 2)]])
+    scale = largest(stiffness)  # K q/scale = pushed - reactions, q = 0 at the pins
+    whole = np.block([[proportions(stiffness, scale), held.T], [held, np.zeros((len(held),) * 2)]])
     right = np.concatenate([pushed, np.zeros(len(held))])
     solution = np.linalg.lstsq(whole, right, rcond=1e-13)[0]
     size = float(pushed @ solution[: len(names)])
     if np.max(np.abs(whole @ solution - right)) > 1e-6 or not size > 1e-12:
         raise PlaceError(f"ShaftBow at {place!r}: a force there does not bend the shaft between its bearings. Put it beside them.")
-    forces = scale / size * (pushed - held.T @ solution[len(names) :])
-    return {name: float(force) for name, force in zip(names, forces, strict=True) if force != 0.0}
+    forces = (pushed - held.T @ solution[len(names) :]) / size
+    return {name: scale * force for name, force in zip(names, forces.tolist(), strict=True) if force != 0.0}
 
 
 def _half_sine(draft: Draft, place: str, station: Station, pins: dict[str, Station], direction: str) -> Load:

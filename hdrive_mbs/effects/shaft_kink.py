@@ -11,6 +11,7 @@ from hdrive_mbs.effects.bow_load import add_bow, load_of
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.quantities import parameter
+from hdrive_mbs.tracked_arrays import array_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,9 +42,8 @@ class ShaftKink(Effect):
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         piece = draft.shaft(place, type(self).__name__)
-        beyond = (1.0 - self.share) * piece.length
-        in_x, in_y = np.zeros(12), np.zeros(12)
-        in_x[6], in_x[10] = self.angle * beyond, self.angle
-        in_y[7], in_y[9] = self.angle * beyond, -self.angle
+        moved, turned = self.angle * ((1.0 - self.share) * piece.length), self.angle
+        in_x = array_of([0.0] * 6 + [moved, 0.0, 0.0, 0.0, turned, 0.0])
+        in_y = array_of([0.0] * 6 + [0.0, moved, 0.0, -turned, 0.0, 0.0])
         spin = next(end for end in piece.ends if not end.held)
         add_bow(self, draft, name, spin, (load_of(piece, in_x), load_of(piece, in_y)), self.phase)

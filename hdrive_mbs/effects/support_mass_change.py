@@ -12,6 +12,7 @@ from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.quantities import parameter
+from hdrive_mbs.tracked_arrays import scaled
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,6 +39,6 @@ class SupportMassChange(Effect):
             return
         for direction, factors in support.displacement.items():
             row = np.array(list(factors.values()))
-            mass = self.change * support.mass * np.outer(row, row)
-            zero = np.zeros_like(mass)
+            mass = scaled(self.change * support.mass, np.outer(row, row))
+            zero = np.zeros(mass.shape)
             draft.add_element(MatrixElement(f"{name}.{direction}", tuple(factors), mass, zero, zero))

@@ -44,8 +44,8 @@ class BearingDraft:
         return s, v
 
     def _linear(self, matrix: FloatArray, direction: str, values: Across) -> Value:
-        row = matrix[tuple(self.stretches).index(direction)]
-        terms = [float(factor) * values[key] for factor, key in zip(row, self.stretches, strict=True) if factor != 0.0]
+        row = matrix[tuple(self.stretches).index(direction)].tolist()
+        terms = [factor * values[key] for factor, key in zip(row, self.stretches, strict=True) if factor != 0.0]
         return sum(terms, 0.0 * values[direction])
 
     def damper(self, direction: str, v: Across) -> Value:

@@ -94,7 +94,7 @@ class Draft(DraftBearings):
             name
             for item in self._elements
             if isinstance(item, MatrixElement)
-            for name, value in zip(item.coordinates, np.diag(item.mass), strict=True)
+            for name, value in zip(item.coordinates, np.diag(np.asarray(item.mass, float)), strict=True)
             if value > 0.0
         }
         for body in bodies:
@@ -130,9 +130,9 @@ class Draft(DraftBearings):
         for element in [item for item in self._elements if isinstance(item, MatrixElement) and item.mass.any()]:
             field_ = np.array([sum(value for ending, value in falls.items() if name.endswith(ending)) for name in element.coordinates])
             forces = element.mass @ field_ if element.falling is None else element.falling @ np.array(self._gravity)
-            for name, force in zip(element.coordinates, forces, strict=True):
+            for name, force in zip(element.coordinates, forces.tolist(), strict=True):
                 if force != 0.0:
-                    self._elements.append(constant_force(f"{element.name}.{name}.weight", name, float(force)))
+                    self._elements.append(constant_force(f"{element.name}.{name}.weight", name, force))
 
     def _station_channels(self) -> list[Channel]:
         channels: list[Channel] = []

@@ -20,6 +20,7 @@ from hdrive_mbs.network.rigid_mass import RigidMass
 from hdrive_mbs.network.running_rate import RunningRate
 from hdrive_mbs.network.station import Station, coordinate_names
 from hdrive_mbs.network.stretch_rate import RateOver, stretch_rate
+from hdrive_mbs.tracked_arrays import as_array, congruent
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -108,15 +109,13 @@ class DraftRotorLine(DraftTorsion):
         arm = np.eye(len(names))
         for k, station in enumerate(stations):
             arm[6 * k : 6 * k + 6, 6 * k : 6 * k + 6] = station.arm()
-        zero = np.zeros_like(stiffness)
-        matrices = [
-            arm.T @ np.asarray(item, float) @ arm
-            for item in (zero if mass is None else mass, zero if damping is None else damping, stiffness)
-        ]
+        zero = np.zeros(np.shape(stiffness))
+        given = (zero if mass is None else mass, zero if damping is None else damping, stiffness)
+        matrices = [congruent(as_array(item), arm) for item in given]
         light = {station.names[5] for k, station in enumerate(stations) if not matrices[0][6 * k + 5].any()}
         used = list(dict.fromkeys(item for item in names if item != "ground" and item not in light))
         gather = np.array([[float(item == kept) for kept in used] for item in names])
-        made = [gather.T @ item @ gather for item in matrices]
+        made = [congruent(item, gather) for item in matrices]
         weight = None if falling is None else gather.T @ arm.T @ falling
         self._elements.append(MatrixElement(name, tuple(used), made[0], made[1], made[2], weight))
 

@@ -19,6 +19,7 @@ from hdrive_mbs.network.rigid_mass import RigidMass
 from hdrive_mbs.network.rigid_motion import forces_of_motion, kinetic_energy, mass_matrix
 from hdrive_mbs.network.running_rate import RunningRate
 from hdrive_mbs.network.stretch_rate import StretchRate
+from hdrive_mbs.tracked_arrays import added_at, diagonal
 
 
 @dataclass(frozen=True)
@@ -199,10 +200,9 @@ class Network:
         """Mass matrix over the bodies [kg, kg m^2] without the rotors."""
         index = {body.name: k for k, body in enumerate(self.bodies)}
         owned = {name for rotor in self.rotors for name in rotor.coordinates}
-        mass = np.diag([0.0 if body.name in owned else body.inertia for body in self.bodies])
+        mass = diagonal([0.0 if body.name in owned else body.inertia for body in self.bodies])
         for element in self.matrices:
-            at = [index[name] for name in element.coordinates]
-            mass[np.ix_(at, at)] += element.mass
+            mass = added_at(mass, np.array([index[name] for name in element.coordinates], int), element.mass)
         return mass
 
     def kinetic_energy(self, moment: Moment) -> Value:

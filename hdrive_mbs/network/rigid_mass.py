@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
+from hdrive_mbs.tracked import cosine, sine
 
-FloatArray = npt.NDArray[np.float64]
+Vector = tuple[float, float, float]
+Tensor = tuple[Vector, Vector, Vector]
 
 
 @dataclass(frozen=True)
@@ -21,8 +21,8 @@ class RigidMass:
     """
 
     mass: float
-    centre: tuple[float, float, float]
-    inertia: tuple[tuple[float, float, float], ...]
+    centre: Vector
+    inertia: Tensor
 
     @classmethod
     def rotor(
@@ -46,17 +46,16 @@ class RigidMass:
         The tensor is R diag(Jt, Jt, Jp) R^T with the exact rotation R that leans the axis, moved to the
         origin by m (|c|^2 E - c c^T).
         """
-        direction = np.array([math.cos(tilt_angle), math.sin(tilt_angle), 0.0])
-        axis = math.sin(tilt) * direction + np.array([0.0, 0.0, math.cos(tilt)])
-        tensor = transverse * np.eye(3) + (polar - transverse) * np.outer(axis, axis)
-        centre = np.array([eccentricity * math.cos(angle), eccentricity * math.sin(angle), 0.0])
-        return cls._made(mass, centre, tensor + mass * _steiner(centre))
+        lean = sine(tilt)
+        axis = (lean * cosine(tilt_angle), lean * sine(tilt_angle), cosine(tilt))
+        centre = (eccentricity * cosine(angle), eccentricity * sine(angle), 0.0)
+        tensor = _tensor(lambda i, j: (transverse if i == j else 0.0) + (polar - transverse) * (axis[i] * axis[j]))
+        return cls(mass, centre, _sum(tensor, _steiner(mass, centre)))
 
     @classmethod
-    def _made(cls, mass: float, centre: FloatArray, inertia: FloatArray) -> RigidMass:
-        x, y, z = (float(value) for value in centre)
-        rows = tuple((float(a), float(b), float(c)) for a, b, c in inertia)
-        return cls(mass, (x, y, z), rows)
+    def point(cls, mass: float, at: Vector) -> RigidMass:
+        """A mass at a point [kg, m]."""
+        return cls(mass, at, _steiner(mass, at))
 
     @property
     def polar(self) -> float:
@@ -72,34 +71,54 @@ class RigidMass:
         """The same body in a frame whose origin lies ``axial`` [m] further back on the axis."""
         if axial == 0.0:
             return self
-        centre = np.array(self.centre)
-        there = centre + np.array([0.0, 0.0, axial])
-        tensor = np.array(self.inertia) - self.mass * _steiner(centre) + self.mass * _steiner(there)
-        return self._made(self.mass, there, tensor)
+        x, y, z = self.centre
+        there = (x, y, z + axial)
+        before, after = _steiner(self.mass, self.centre), _steiner(self.mass, there)
+        return RigidMass(self.mass, there, _tensor(lambda i, j: self.inertia[i][j] - before[i][j] + after[i][j]))
 
     def balanced(self) -> RigidMass:
         """The same body without unbalance: what a Campbell diagram is computed with."""
-        tensor = np.diag([self.transverse, self.transverse, self.polar])
-        return self._made(self.mass, np.array([0.0, 0.0, self.centre[2]]), tensor)
+        transverse = self.transverse
+        tensor = ((transverse, 0.0, 0.0), (0.0, transverse, 0.0), (0.0, 0.0, self.polar))
+        return RigidMass(self.mass, (0.0, 0.0, self.centre[2]), tensor)
 
     def __add__(self, other: RigidMass) -> RigidMass:
         mass = self.mass + other.mass
-        moment = self.mass * np.array(self.centre) + other.mass * np.array(other.centre)
-        return self._made(mass, moment / mass if mass > 0.0 else moment, np.array(self.inertia) + np.array(other.inertia))
+        x, y, z = (self.mass * a + other.mass * b for a, b in zip(self.centre, other.centre, strict=True))
+        centre = (x / mass, y / mass, z / mass) if mass > 0.0 else (x, y, z)
+        return RigidMass(mass, centre, _sum(self.inertia, other.inertia))
+
+    @property
+    def unbalance(self) -> tuple[float, float, float, float]:
+        """x and y part of the static unbalance m e [kg m] and J_xz, J_yz [kg m^2], in the frame of the body."""
+        return self.mass * self.centre[0], self.mass * self.centre[1], self.inertia[0][2], self.inertia[1][2]
 
     @property
     def static_unbalance(self) -> complex:
         """m e as a complex number: x part + i y part [kg m], in the frame of the body."""
-        return self.mass * complex(self.centre[0], self.centre[1])
+        return complex(*self.unbalance[:2])
 
     @property
     def product_unbalance(self) -> complex:
         """J_xz + i J_yz [kg m^2]: the moment of a spin w is w^2 times it (M_x = J_yz w^2, M_y = -J_xz w^2)."""
-        return complex(self.inertia[0][2], self.inertia[1][2])
+        return complex(*self.unbalance[2:])
 
 
-def _steiner(centre: FloatArray) -> FloatArray:
-    return np.asarray(float(centre @ centre) * np.eye(3) - np.outer(centre, centre))
+def _tensor(entry: Callable[[int, int], float]) -> Tensor:
+    """A symmetric tensor from its entries on and above the diagonal."""
+    xx, xy, xz, yy, yz, zz = (entry(i, j) for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)))
+    return (xx, xy, xz), (xy, yy, yz), (xz, yz, zz)
+
+
+def _sum(a: Tensor, b: Tensor) -> Tensor:
+    return _tensor(lambda i, j: a[i][j] + b[i][j])
+
+
+def _steiner(mass: float, centre: Vector) -> Tensor:
+    """m (|c|^2 E - c c^T)."""
+    x, y, z = centre
+    square = x * x + y * y + z * z
+    return _tensor(lambda i, j: mass * ((square if i == j else 0.0) - centre[i] * centre[j]))
 
 
 NOTHING = RigidMass(0.0, (0.0, 0.0, 0.0), ((0.0, 0.0, 0.0),) * 3)

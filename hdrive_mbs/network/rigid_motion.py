@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.rigid_mass import RigidMass
+from hdrive_mbs.tracked_arrays import array_of
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -69,6 +70,21 @@ def mass_matrix(body: RigidMass, coordinates: Sequence[Value]) -> FloatArray:
     upper = np.concatenate([moving, coupling], axis=-1)
     lower = np.concatenate([np.swapaxes(coupling, -1, -2), turning], axis=-1)
     return np.concatenate([upper, lower], axis=-2)
+
+
+def mass_at_rest(body: RigidMass) -> FloatArray:
+    """M at coordinates of zero, 6x6, of numbers that may be tracked: A = G = E."""
+    m, (x, y, z) = body.mass, body.centre
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = body.inertia
+    rows = [
+        [m, 0.0, 0.0, 0.0, m * z, -(m * y)],
+        [0.0, m, 0.0, -(m * z), 0.0, m * x],
+        [0.0, 0.0, m, m * y, -(m * x), 0.0],
+        [0.0, -(m * z), m * y, xx, xy, xz],
+        [m * z, 0.0, -(m * x), yx, yy, yz],
+        [-(m * y), m * x, 0.0, zx, zy, zz],
+    ]
+    return array_of(rows)
 
 
 def forces_of_motion(body: RigidMass, coordinates: Sequence[Value], speeds: Sequence[Value]) -> FloatArray:

@@ -15,6 +15,7 @@ from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Body, Channel, Rotor
 from hdrive_mbs.network.rigid_mass import RigidMass
+from hdrive_mbs.tracked_arrays import array_of
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -109,16 +110,14 @@ def _turning_along(node: str, inertia: float) -> Iterator[MatrixElement]:
     """Inertia on the spin of a rotor alone, J phi'': what its rigid body leaves out."""
     if inertia > 0.0:
         zero = np.zeros((1, 1))
-        yield MatrixElement(f"{node}.turning", (node,), np.array([[inertia]]), zero, zero)
+        yield MatrixElement(f"{node}.turning", (node,), array_of([[inertia]]), zero, zero)
 
 
 def _lever(node: str, mass: RigidMass) -> MatrixElement:
     """What a centre of mass at distance a along +z adds to the masses: m a between x and theta, -m a between y and psi."""
     x, y, _, psi, theta, _ = coordinate_names(node)
     moment = mass.mass * mass.centre[2]
-    matrix = np.zeros((4, 4))
-    matrix[0, 1] = matrix[1, 0] = moment
-    matrix[2, 3] = matrix[3, 2] = -moment
+    matrix = array_of([[0.0, moment, 0.0, 0.0], [moment, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, -moment], [0.0, 0.0, -moment, 0.0]])
     return MatrixElement(f"{node}.lever", (x, theta, y, psi), matrix, np.zeros((4, 4)), np.zeros((4, 4)))
 
 
@@ -129,20 +128,16 @@ def _forced_unbalance(node: str, mass: RigidMass, sense: int, motion: Callable[[
     M_y - i M_x = -(w^2 - i a) J exp(i phi).
     """
     speed, acceleration = gradient(motion), gradient(gradient(motion))
-    pairs = (
-        ("x", mass.static_unbalance, 1.0, 0.0),
-        ("y", mass.static_unbalance, 0.0, 1.0),
-        ("theta", mass.product_unbalance, -1.0, 0.0),
-        ("psi", mass.product_unbalance, 0.0, 1.0),
-    )
+    static, product = mass.unbalance[:2], mass.unbalance[2:]
+    pairs = (("x", static, 1.0, 0.0), ("y", static, 0.0, 1.0), ("theta", product, -1.0, 0.0), ("psi", product, 0.0, 1.0))
     for key, size, real, imaginary in pairs:
-        if size == 0.0:
+        if not any(size):
             continue
 
-        def force(moment: Moment, size: complex = size, real: float = real, imaginary: float = imaginary) -> Value:
+        def force(moment: Moment, size: tuple[float, float] = size, real: float = real, imaginary: float = imaginary) -> Value:
             time = moment.time
             angle = sense * motion(time)
-            a, b = size.real, size.imag
+            a, b = size
             cosine, sine = a * np.cos(angle) - b * np.sin(angle), b * np.cos(angle) + a * np.sin(angle)
             square, rise = speed(time) ** 2, sense * (acceleration(time) + 0.0 * time)
             # (w^2 - i a)(c + i s) = w^2 c + a s + i (w^2 s - a c)

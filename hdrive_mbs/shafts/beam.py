@@ -17,6 +17,7 @@ import numpy.typing as npt
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.quantities import Described, parameter
 from hdrive_mbs.shafts.section_geometry import CircularSection
+from hdrive_mbs.tracked_arrays import added_at, array_of, scaled, zeros
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -146,7 +147,7 @@ class Beam(Described):
         """
         phi, length = self.shear_parameter, self.length
         near, far = (4.0 + phi) * length**2, (2.0 - phi) * length**2
-        plane = np.array(
+        plane = array_of(
             [
                 [12.0, 6.0 * length, -12.0, 6.0 * length],
                 [6.0 * length, near, -6.0 * length, far],
@@ -154,8 +155,8 @@ class Beam(Described):
                 [6.0 * length, far, -6.0 * length, near],
             ]
         )
-        plane *= self.youngs_modulus * self.second_moment / ((1.0 + phi) * length**3)
-        stiffness = np.zeros((12, 12))
+        plane = scaled(self.youngs_modulus * self.second_moment / ((1.0 + phi) * length**3), plane)
+        stiffness = zeros((12, 12), like=plane)
         for places, signs in (_X_PLANE, _Y_PLANE):
             stiffness[np.ix_(places, places)] = plane * np.outer(signs, signs)
         return stiffness
@@ -164,7 +165,8 @@ class Beam(Described):
         """Bending and shear in both planes, E A / L along z, G Ip / L about z."""
         stiffness = self.bending_stiffness()
         for row, spring in ((2, self.youngs_modulus * self.area), (5, self.shear_modulus * self.polar_moment)):
-            stiffness[np.ix_((row, row + 6), (row, row + 6))] = spring / self.length * np.array([[1.0, -1.0], [-1.0, 1.0]])
+            along = scaled(spring / self.length, np.array([[1.0, -1.0], [-1.0, 1.0]]))
+            stiffness = added_at(stiffness, np.array([row, row + 6]), along)
         return stiffness
 
     def mass(self, *, rotary_inertia: bool = True) -> FloatArray:

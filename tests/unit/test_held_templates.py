@@ -52,7 +52,7 @@ def test_a_law_on_a_rotor_line_has_a_template_about_held_parameters(
         return _compiled(network, trial)
 
     points = about(hypothesis, PAYS, nominal=0.4)
-    lines = Templates(held=True).lines(hypothesis, trial.scene, points, "lateral", made)
+    lines = Templates(large=True, held=True).lines(hypothesis, trial.scene, points, "lateral", made)
     assert sum(line is not None for line in lines) >= PAYS - 2  # a way may part where a size comes to its limit
     for z, line in zip(points[1:], lines[1:], strict=True):
         if line is not None:
@@ -75,7 +75,7 @@ def test_one_is_made_where_it_pays_and_holds_for_its_own_parameters_alone(
         built.append(network)
         return _compiled(network, trial)
 
-    kept = Templates(held=True)
+    kept = Templates(large=True, held=True)
     points = about(hypothesis, PAYS)
     assert kept.lines(hypothesis, trial.scene, points[: PAYS - 1], "lateral", made) == [None] * (PAYS - 1)
     assert not built
@@ -84,15 +84,16 @@ def test_one_is_made_where_it_pays_and_holds_for_its_own_parameters_alone(
     elsewhere = about(hypothesis, 1, nominal=1.0)
     assert kept.lines(hypothesis, trial.scene, elsewhere, "lateral", made) == [None]
     assert kept.lines(Hypothesis(hypothesis.factors), trial.scene, [np.zeros(2)] * PAYS, "lateral", made) == [None] * PAYS
-    monkeypatch.setattr(templates, "KEPT_HELD", 1)
-    small = Templates(held=True)
+    monkeypatch.setattr(templates, "KEPT_LARGE", 1)
+    small = Templates(large=True, held=True)
     for nominal in (0.0, 1.0):
         small.lines(hypothesis, trial.scene, about(hypothesis, PAYS, nominal=nominal), "lateral", made)
     assert len(small._kept) == 1
 
 
-def test_a_law_whose_numbers_go_through_a_matrix_is_built_and_asked_for_once(trials: list[Trial]) -> None:
-    [first, *_] = candidates(bench().scene, hm.SupportMassChange)
+@pytest.mark.parametrize("held", [True, False])
+def test_a_law_whose_numbers_go_through_a_matrix_is_built_and_asked_for_once(trials: list[Trial], held: bool) -> None:
+    [first, *_] = candidates(bench().scene, hm.HiddenModeSupport)
     hypothesis, trial = Hypothesis(factors("bearing_stiffness", "youngs_modulus"), first.starts[:1]), trials[0]
     built: list[Network] = []
 
@@ -100,7 +101,7 @@ def test_a_law_whose_numbers_go_through_a_matrix_is_built_and_asked_for_once(tri
         built.append(network)
         return _compiled(network, trial)
 
-    kept = Templates(held=True)
+    kept = Templates(large=True, held=held)
     assert kept.lines(hypothesis, trial.scene, about(hypothesis, PAYS), "lateral", made) == [None] * PAYS
     tried = len(built)
     assert tried > 0

@@ -36,7 +36,8 @@ def test_a_computation_is_had_for_other_numbers(name: str) -> None:
     assert type(found) is Tracked
     assert float(found) == pytest.approx(float(compute(0.7, 2.2)), rel=1e-15)
     others = {"a": np.array([0.7, 0.31, 1.9, 5.0]), "b": np.array([2.2, 3.3, 0.4, 7.7])}
-    [values], holds = tape.again(others, [found])[0].T, tape.again(others, [found])[1]
+    made, holds = tape.replay([found]).again(others)
+    [values] = made.T
     assert holds.all()
     np.testing.assert_allclose(values, [float(compute(a, b)) for a, b in zip(others["a"], others["b"], strict=True)], rtol=1e-14)
     assert tape.lost is None
@@ -48,7 +49,7 @@ def test_where_a_comparison_comes_out_otherwise_it_says_so() -> None:
     found = a * 2.0 if a > 0.5 else a * 3.0
     for bound in (a < 4.0, a >= 0.1, a != 3.0, bool(a)):
         assert bound is True
-    values, holds = tape.again({"a": np.array([1.0, 0.2, 0.6, 5.0, 3.0, 0.0])}, [found, 7.0])
+    values, holds = tape.replay([found, 7.0]).again({"a": np.array([1.0, 0.2, 0.6, 5.0, 3.0, 0.0])})
     assert holds.tolist() == [True, False, True, False, False, False]
     np.testing.assert_array_equal(values[holds], [[2.0, 7.0], [1.2, 7.0]])
 
@@ -96,7 +97,7 @@ def test_fields_keep_it_within_their_ranges() -> None:
     part = hm.ViscousDrag(coefficient=tape.start("c", 0.2))
     assert type(part.coefficient) is Tracked
     assert type(part.replacing(coefficient=part.coefficient * 2.0).coefficient) is Tracked
-    _, holds = tape.again({"c": np.array([0.3, -0.1])}, [part.coefficient])
+    _, holds = tape.replay([part.coefficient]).again({"c": np.array([0.3, -0.1])})
     assert holds.tolist() == [True, False]
     with pytest.raises(hm.ParameterError, match="must be at least 0"):
         hm.ViscousDrag(coefficient=tape.start("d", -0.2))

@@ -28,7 +28,7 @@ from hdrive_mbs.network.excitation import Excitation
 from hdrive_mbs.network.matrix_element import MatrixElement
 from hdrive_mbs.network.moment import Moment, recording_moment
 from hdrive_mbs.network.network import Network
-from hdrive_mbs.network.rigid_motion import mass_matrix
+from hdrive_mbs.network.rigid_motion import mass_at_rest
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -91,7 +91,7 @@ class LineMatrices:
         for rotor in network.rotors:
             at = [self._index[name] for name in rotor.coordinates]
             sense = np.array([1.0] * 5 + [float(rotor.sense)])
-            self.mass[np.ix_(at, at)] += mass_matrix(rotor.body.balanced(), [0.0] * 6) * np.outer(sense, sense)
+            self.mass[np.ix_(at, at)] += mass_at_rest(rotor.body.balanced()) * np.outer(sense, sense)
             self._add_gyroscope(rotor.coordinates[3], rotor.coordinates[4], rotor.coordinates[5], rotor.sense * rotor.body.polar)
         for element in network.elements:
             self._add(element)
