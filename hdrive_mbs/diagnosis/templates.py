@@ -24,13 +24,13 @@ from hdrive_mbs.compiled.program import Program
 from hdrive_mbs.diagnosis.hypothesis import FloatArray, Hypothesis
 from hdrive_mbs.network.network import Network
 from hdrive_mbs.scene import Scene
-from hdrive_mbs.tracked import Replay, Tape, Tracked
+from hdrive_mbs.tracked import Replay, Tape, Tracked, plain
 
 Compile = Callable[[Network], CompiledLine | None]
 
 SAME = 1e-11
 """Relative difference of constants that rounding may make."""
-KEPT, KEPT_LARGE = 256, 8
+KEPT, KEPT_LARGE = 256, 32
 """Templates that are kept; of rotor lines, which are large and asked for one hypothesis after another, fewer."""
 PAYS = 6
 """Lines for which a template of a rotor line is made: it takes as long as two or three, and its checks as many."""
@@ -216,7 +216,16 @@ def _recorded(
         return None
     if line is None or tape.lost is not None or any(type(state.initial) is Tracked for state in line.network.states):
         return None
-    return Template(tape.replay(line.program.numbers.found), line, tuple(path for path in values if path in free.paths))
+    return Template(tape.replay(line.program.numbers.found), _light(line), tuple(path for path in values if path in free.paths))
+
+
+def _light(line: CompiledLine) -> CompiledLine:
+    """The line without what its making alone needed, which takes most of the memory: laws, and what was done with tracked numbers."""
+    bodies = tuple(replace(body, inertia=plain(body.inertia)) for body in line.network.bodies)
+    light = copy.copy(line)
+    light.network = replace(line.network, bodies=bodies, elements=(), channels=(), rotors=(), members={})
+    light.program = replace(line.program, numbers=replace(line.program.numbers, found=()))
+    return light
 
 
 def _agrees(template: Template, hypothesis: Hypothesis, scene: Scene, point: FloatArray, compiled: Compile) -> bool | None:
