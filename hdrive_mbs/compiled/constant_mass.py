@@ -125,7 +125,10 @@ def _factor(size: int, entries: bytes) -> _Factor | None:
 
 
 def _tracked(factor: _Factor, matrix: FloatArray) -> _Factor:
-    """The factor of a matrix with tracked numbers from that of its plain ones: the same entries, worked out one by one."""
+    """The factor of a matrix with tracked numbers from that of its plain ones: the same entries, worked out one by one.
+
+    That it is positive for other numbers too is a comparison that is kept.
+    """
     entries: dict[tuple[int, int], float] = {}
     pivots: list[float] = []
     for i, row in enumerate(factor.below):
@@ -139,6 +142,8 @@ def _tracked(factor: _Factor, matrix: FloatArray) -> _Factor:
         pivot = matrix.item(factor.order[i], factor.order[i])
         for j, value in left.items():
             pivot = pivot - value * entries[i, j]
+        if not pivot > 0.0:
+            raise ArithmeticError(f"A pivot of a mass matrix that is positive came out as {pivot:g}.")
         pivots.append(pivot)
     below = tuple(tuple((j, entries[i, j]) for j, _ in row) for i, row in enumerate(factor.below))
     right = tuple(tuple((j, entries[j, i]) for j, _ in column) for i, column in enumerate(factor.right))

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from hdrive_mbs.compiled.constant_mass import ConstantMass
 from hdrive_mbs.tracked import Tape, Tracked
 from hdrive_mbs.tracked_arrays import (
     added_at,
@@ -67,6 +68,28 @@ def test_shares_of_a_size_are_plain_and_hold_as_long_as_entries_stay_in_proporti
     _, holds = tape.replay([a]).again({"a": np.array([3.0, 3.0]), "b": np.array([3.0, 3.1])})
     assert holds.tolist() == [True, False]
     np.testing.assert_array_equal(proportions(np.array([2.0, 3.0]), 4.0), [0.5, 0.75])
+
+
+def test_a_mass_matrix_is_factorised_for_other_numbers_as_long_as_it_is_positive() -> None:
+    tape = Tape()
+    a, b = tape.start("a", 2.0), tape.start("b", 0.5)
+
+    def matrix(a: float, b: float) -> np.ndarray:
+        return array_of([[a, b, 0.0], [b, 1.0, 0.3], [0.0, 0.3, 2.0 * a]])
+
+    def columns(a: float, b: float) -> list[float]:
+        mass = ConstantMass(["x", "y", "z"], matrix(a, b))
+        return [value for name in ("x", "y") for value in mass.column({name: a}).values()]
+
+    found = columns(a, b)
+    assert len(found) == 6
+    made, holds = tape.replay(found).again({"a": np.array([2.0, 3.0, 0.2]), "b": np.array([0.5, -0.9, 0.5])})
+    assert holds.tolist() == [True, True, False]  # of a smaller mass than the coupling allows
+    for row, (a, b) in zip(made[:2], ((2.0, 0.5), (3.0, -0.9)), strict=True):
+        np.testing.assert_allclose(row, columns(a, b), rtol=1e-14)
+        whole = np.linalg.inv(matrix(a, b)) * a
+        names = list(ConstantMass(["x", "y", "z"], matrix(a, b)).column({"x": a}))
+        np.testing.assert_allclose(row[:3], [whole["xyz".index(name), 0] for name in names], rtol=1e-13)
 
 
 def test_what_is_known_of_an_array() -> None:
