@@ -1064,7 +1064,9 @@ def test_pairs_that_lie_close_together_are_fitted_to_the_end_before_one_is_chose
     assert [[added.at for added in item.added] for item in asked] == [["load", "motor"], ["load", "wave_generator"]]
 
 
-@pytest.mark.parametrize(("leaves", "above", "again"), [(1.6, 5000.0, True), (1.0, 5000.0, False), (1.6, 5990.0, False)])
+@pytest.mark.parametrize(
+    ("leaves", "above", "again"), [(1.6, 5000.0, True), (1.05, 5000.0, True), (1.0, 5000.0, False), (1.6, 5990.0, False)]
+)
 def test_the_first_of_two_causes_is_looked_for_again_beside_the_second_where_both_leave_something(
     simulator: Simulator, near: Fitted, monkeypatch: pytest.MonkeyPatch, leaves: float, above: float, again: bool
 ) -> None:

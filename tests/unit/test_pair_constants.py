@@ -5,6 +5,7 @@ Stored are the cases of these sets that have two causes or for which a second on
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -15,7 +16,8 @@ import pytest
 from benchmarks.withheld.calibrate import Stored, stored
 from benchmarks.withheld.names import names_of
 from hdrive_mbs.diagnosis.joined import CLEAR, JOINED
-from hdrive_mbs.diagnosis.second_cause import LEFT, NOTICED, SLIGHT
+from hdrive_mbs.diagnosis.nearly import nearly_right
+from hdrive_mbs.diagnosis.second_cause import LEFT, NOTICED, SLIGHT, nearly_all
 from hdrive_mbs.diagnosis.verdict import taken
 
 OWN = Path(__file__).parents[2] / "benchmarks" / "withheld" / "own"
@@ -109,3 +111,22 @@ def test_the_best_pair_of_a_search_that_misses_the_second_cause_may_take_less() 
     assert taken(first, left(min(case.raw["second"], key=lambda item: item["cost"]))) == pytest.approx(0.1939, abs=5e-5)
     labels = list(dict.fromkeys(map(label, case.raw["search"])))
     assert labels[:2] == [("bearing_clearance", "bearing_2"), ("looseness", "bearing_2")]
+
+
+def test_of_right_pairs_few_leave_so_much_that_the_first_cause_is_looked_for_again_and_of_wrong_ones_all() -> None:
+    """What the answer of two causes leaves on all samples, of every case of these sets whose fits are kept."""
+    numbers = {"drive": range(17, 28), "rotor": (*range(9, 20), *range(21, 25), 26, 28, 29)}
+    right, wrong = [], []
+    for bench, some in numbers.items():
+        for name, case in cases(*((bench, n) for n in some)):
+            truth = {(item["effect"], item["at"]) for item in case.labels["truth"]}
+            answered = json.loads((OWN / name.split()[0] / "results.json").read_text("utf-8"))["cases"]
+            [answer] = [item for item in answered if item["case"] == case.raw["case"]]
+            if case.raw["pairs"] and len(answer["claim"]) == 2:
+                pair, gap = left(case.raw["pairs"][0]), case.raw["null"]["fit"]
+                there = right if len(truth) == 2 and answer["effect"] else wrong
+                there.append((pair <= nearly_all(gap), pair <= max(SLIGHT, nearly_right(gap))))
+    assert [sum(column) for column in zip(*right, strict=True)] == [39, 41]
+    assert len(right) == 51
+    assert [sum(column) for column in zip(*wrong, strict=True)] == [0, 3]
+    assert len(wrong) == 5
