@@ -17,9 +17,9 @@ def test_lines_from_templates_have_the_constants_of_those_that_are_built(tmp_pat
     drive, rotor = ([row for row in rows if row["bench"] == bench] for bench in ("drive", "rotor"))
     assert len(drive) > 5
     assert all(row["has"] and row["kept"] > 0 and row["apart"] < 1e-11 for row in drive)
-    with_one = [row for row in rotor if row["has"]]
-    assert 0.6 * len(rotor) < len(with_one) < len(rotor)  # numbers that go through matrices have none
-    assert all(row["kept"] > 0 and row["apart"] < 1e-11 for row in with_one)
+    without = {row["law"] for row in rotor if not row["has"]}
+    assert without <= {"HiddenModeSupport"}  # of a matrix whose entries do not stay in proportion
+    assert all(row["kept"] > 0 and row["apart"] < 1e-11 for row in rotor if row["has"])
     text = capsys.readouterr().out
     for some in (drive, rotor):
         assert f"{sum(row['has'] for row in some)} of {len(some)} laws and places have a template" in text

@@ -24,7 +24,7 @@ from hdrive_mbs.network import claims
 from models import drive_bench, rotor_bench
 
 KEPT: tuple[Any, ...] = (
-    topology._joints, topology._check, topology._layout, shaft_section._ends, shaft_section._matrices, claims._values,
+    topology._joints, topology._check, topology._layout, shaft_section._kept_ends, shaft_section._kept_matrices, claims._values,
     groups._groups, linear_forces._shares, constant_mass._factor, constant_mass._column, structure.shaped,
 )  # fmt: skip
 
