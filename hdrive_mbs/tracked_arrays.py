@@ -17,7 +17,7 @@ ROUNDING = 1e-11
 """Relative difference up to which entries of an array are in proportion."""
 
 FloatArray = npt.NDArray[np.float64]
-"""Of objects too, of which nobody but this file has to know."""
+"""Of objects too; ``is_tracked`` tells."""
 
 
 def array_of(values: Any) -> FloatArray:
@@ -71,7 +71,7 @@ def scaled(factor: float, array: FloatArray) -> FloatArray:
 
 
 def largest(array: FloatArray) -> float:
-    """The largest magnitude of its entries."""
+    """The largest magnitude of its entries.  Of tracked ones it is that of the same entry later, whichever is the largest then."""
     place = np.argmax(np.abs(np.asarray(array, float)))
     return abs(array.ravel().item(int(place)))
 

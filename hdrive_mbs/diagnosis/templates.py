@@ -30,7 +30,7 @@ Compile = Callable[[Network], CompiledLine | None]
 
 SAME = 1e-11
 """Relative difference of constants that rounding may make."""
-KEPT, KEPT_LARGE = 256, 32
+KEPT, KEPT_LARGE = 256, 8
 """Templates that are kept; of rotor lines, which are large and asked for one hypothesis after another, fewer."""
 PAYS = 6
 """Lines for which a template of a rotor line is made: it takes as long as two or three, and its checks as many."""

@@ -109,6 +109,28 @@ def test_a_law_whose_numbers_go_through_a_matrix_is_built_and_asked_for_once(tri
     assert len(built) == tried
 
 
+def test_beside_a_cause_whose_numbers_go_through_a_matrix_there_is_one_about_held_numbers(
+    hypotheses: dict[type[hm.Effect], Hypothesis], trials: list[Trial]
+) -> None:
+    """A second cause is looked for beside a mass on springs too."""
+    [first, *_] = candidates(bench().scene, hm.HiddenModeSupport)
+    whirl, trial = hypotheses[hm.OilWhirl], trials[0]
+    hypothesis = Hypothesis(whirl.factors, (*first.starts[:1], *whirl.added))
+    own = whirl.size - whirl.nominal_size
+    rng = np.random.default_rng(4)
+    free = np.arange(hypothesis.size) >= hypothesis.size - own
+    points = [hypothesis.clipped(hypothesis.start() + 0.2 * free * rng.standard_normal(hypothesis.size)) for _ in range(PAYS)]
+
+    def made(network: Network) -> CompiledLine:
+        return _compiled(network, trial)
+
+    assert Templates(large=True).lines(hypothesis, trial.scene, points, "lateral", made) == [None] * PAYS
+    lines = Templates(large=True, held=True).lines(hypothesis, trial.scene, points, "lateral", made)
+    for z, line in zip(points, lines, strict=True):
+        assert line is not None
+        assert alike(line.program, made(hypothesis.scene(trial.scene, z, to_run=True).network()).program)
+
+
 def test_lines_of_a_rotor_with_templates_are_those_without(
     hypotheses: dict[type[hm.Effect], Hypothesis], trials: list[Trial], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -20,7 +20,7 @@ import sympy as sp
 import hdrive_mbs as hm
 from hdrive_mbs.analysis.time_response import channel_of
 from hdrive_mbs.network.rigid_mass import NOTHING, RigidMass
-from hdrive_mbs.network.rigid_motion import forces_of_motion, kinetic_energy, mass_matrix
+from hdrive_mbs.network.rigid_motion import forces_of_motion, kinetic_energy, mass_at_rest, mass_matrix
 
 FloatArray = npt.NDArray[np.float64]
 ROUNDING = 1e-12
@@ -100,6 +100,13 @@ def test_many_states_at_once_give_what_each_gives_alone() -> None:
         alone = mass_matrix(body, list(q[k])), forces_of_motion(body, list(q[k]), list(v[k])), kinetic_energy(body, list(q[k]), list(v[k]))
         for whole, one in zip(together, alone):
             assert_same(whole[k], one, 1e-14)
+
+
+def test_the_mass_at_rest_is_that_of_the_point_masses_at_coordinates_of_zero() -> None:
+    cloud, still = Cloud.random(8), np.zeros(6)
+    matrix, _, _ = cloud.equations(still, still)
+    assert_same(mass_at_rest(cloud.body()), matrix)
+    assert np.count_nonzero(mass_at_rest(cloud.body())) == 24  # 3 masses, 12 couplings and 9 moments of inertia
 
 
 def test_the_forces_of_motion_do_the_work_that_changes_the_kinetic_energy() -> None:
