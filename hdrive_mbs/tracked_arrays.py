@@ -27,9 +27,8 @@ def array_of(values: Any) -> FloatArray:
 
 
 def as_array(values: npt.ArrayLike) -> FloatArray:
-    """An array as it is, of floats if it is one of other plain numbers."""
-    found = np.asarray(values)
-    return found if found.dtype == object else np.asarray(found, float)
+    """An array of floats as it is, anything else as ``array_of`` makes it."""
+    return values if isinstance(values, np.ndarray) and values.dtype == float else array_of(values)
 
 
 def is_tracked(array: FloatArray) -> bool:

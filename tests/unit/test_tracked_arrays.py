@@ -95,7 +95,13 @@ def test_what_is_known_of_an_array() -> None:
     tape = Tape()
     a = tape.start("a", 2.0)
     assert as_array([1, 2]).dtype == float
+    assert as_array(np.array([1, 2.5], object)).dtype == float
     assert is_tracked(as_array(array_of([a])))
+    assert is_tracked(as_array([[a, 0.0], [0.0, 1.0]]))
+    known = np.ones(2)
+    assert as_array(known) is known
+    with pytest.raises(ValueError, match="could not convert"):
+        as_array(np.array(["stiff"], object))
     assert zeros((2, 2), like=array_of([a])).dtype == object
     assert zeros((2,), like=np.ones(2)).dtype == float
     assert largest(np.array([1.0, -3.0])) == 3.0
