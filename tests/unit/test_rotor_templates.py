@@ -12,7 +12,9 @@ from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.lines import _compiled
 from hdrive_mbs.diagnosis.templates import PAYS, Templates, alike
 from hdrive_mbs.diagnosis.trial import Trial
+from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.network.network import Network
+from models import rotor_bench
 from tests.unit.rotor_bench_records import bench, compiled, factors, recorded
 
 LAWS = (
@@ -83,3 +85,25 @@ def test_a_template_is_not_changed_by_lines_that_are_built_with_its_own_numbers(
     for _ in range(9):  # checked beside the same point, at which it was recorded, in the 2nd, 4th and 8th use
         lines = kept.lines(hypothesis, trial.scene, points, "lateral", made)
         assert all(line is not None for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("changes", "path", "has_one"),
+    [
+        ({}, "youngs_modulus", True),
+        ({}, "diameter", True),
+        ({}, "length", False),  # positions along the shaft
+        ({"shear": True}, "youngs_modulus", False),  # the matrix changes its shape
+        ({"density": 7850.0}, "youngs_modulus", True),
+        ({"density": 7850.0}, "diameter", False),  # masses out of plain arrays
+        ({"density": 7850.0}, "density", False),
+    ],
+)
+def test_what_of_a_shaft_leads_through_arrays_that_keep_no_numbers_is_built(changes: dict[str, object], path: str, has_one: bool) -> None:
+    section = rotor_bench.build("bump").parts["section_2"].replacing(**changes)
+    scene = rotor_bench.build("bump").replacing({"section_2": section})
+    value = getattr(section, path)
+    factor = Factor(path=f"section_2.{path}", name=path, nominal={f"section_2.{path}": value}, sigma=0.02)
+    points = [np.array([0.1 * k]) for k in range(PAYS)]
+    lines = Templates(large=True).lines(Hypothesis((factor,)), scene, points, "bump", lambda made: CompiledLine(made, ["rotor_1.x"]))
+    assert [line is not None for line in lines] == [has_one] * PAYS
