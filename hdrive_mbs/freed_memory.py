@@ -13,8 +13,13 @@ def give_back() -> None:
     its arrays.
     """
     gc.collect()
+    trim()
+
+
+def trim() -> None:
+    """Hand back what the C library keeps of freed memory, without a search for garbage, which takes longer."""
     try:
-        trim = ctypes.CDLL(None).malloc_trim
+        give = ctypes.CDLL(None).malloc_trim
     except (AttributeError, OSError, TypeError):
         return
-    trim(ctypes.c_size_t(0))
+    give(ctypes.c_size_t(0))

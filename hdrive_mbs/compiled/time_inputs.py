@@ -17,8 +17,8 @@ from hdrive_mbs.tracked import plain
 
 FloatArray = npt.NDArray[np.float64]
 
-KEPT_BYTES = 96_000_000
-"""Memory for columns that are kept for later runs."""
+KEPT_BYTES = 48_000_000
+"""Memory for columns that are kept for later runs; what was let go is read again in milliseconds."""
 
 _kept: OrderedDict[Hashable, FloatArray] = OrderedDict()
 _keeping = threading.RLock()

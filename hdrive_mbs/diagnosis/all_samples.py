@@ -19,6 +19,7 @@ from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.tasks import FINE, NEAR, Task, further, rivalling, run_task
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.errors import AnalysisError
+from hdrive_mbs.freed_memory import trim
 
 Work = Callable[[Simulator], Any]
 
@@ -101,7 +102,10 @@ def _levelled(team: Team, fine: Simulator, fits: Mapping[int, Fitted | None], br
 
 
 def _done(fine: Simulator, work: Work) -> Any:
-    return work(fine)
+    """The answer to some work; what is freed of it does not add to what the next takes, since all processes are at their largest here."""
+    found = work(fine)
+    trim()
+    return found
 
 
 def _of_nominal(null: Fitted) -> Task:

@@ -11,6 +11,8 @@ import hdrive_mbs as hm
 from hdrive_mbs.compiled import constant_mass, linear_forces, machine, springs, structure, time_inputs
 from hdrive_mbs.compiled.let_go import let_go
 from hdrive_mbs.compiled.line import CompiledLine
+from hdrive_mbs.compiled.time_inputs import time_input
+from hdrive_mbs.expression import record, variable
 from tests.unit.diagnosis_job import KINDS, run
 
 
@@ -53,3 +55,20 @@ def test_a_diagnosis_that_leaves_its_runs_to_processes_keeps_nothing_for_later(t
     run(tmp_path, workers, kinds=KINDS[:1])
     assert bool(machine.machine.cache_info().currsize) is (workers == 1)
     assert bool(time_inputs._kept) is (workers == 1)
+
+
+def test_columns_that_were_asked_for_longest_ago_are_let_go_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    grid = time_inputs.Grid(start=0.0, every=1e-3, inner=1, first=0, samples=100)
+    size = len(grid.times()) * 8
+    monkeypatch.setattr(time_inputs, "KEPT_BYTES", 3 * size)
+    t = variable("t")
+    first, second, third = (time_input(record(factor * t)) for factor in (2.0, 3.0, 4.0))
+    let_go()
+    kept, gone = first.column(grid), second.column(grid)  # and the time itself
+    assert first.column(grid) is kept
+    third.column(grid)
+    assert sum(column.nbytes for column in time_inputs._kept.values()) <= 3 * size
+    assert first.column(grid) is kept
+    again = second.column(grid)
+    assert again is not gone
+    np.testing.assert_array_equal(again, 3.0 * grid.times())
