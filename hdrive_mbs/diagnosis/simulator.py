@@ -27,9 +27,9 @@ Skipped = frozenset[int]
 
 BLOCKS = 12
 """Stretches of a record, each with its own scale where the model is wrong."""
-KEPT = 16
+KEPT = 8
 """Runs of each trial that are kept: an effect of sensors or of the drive leaves some trials as they are."""
-AT_ONCE = 16
+AT_ONCE = 8
 """Points that are run at once: their columns in all trials take memory, of which residuals keep a part."""
 
 
