@@ -15,7 +15,7 @@ from hdrive_mbs.diagnosis.locate.motion import KnownForce, Motion, columns_of
 from hdrive_mbs.diagnosis.locate.observer import FINER, NEAR, Observer, averaged
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.noise import Whitener
-from hdrive_mbs.diagnosis.simulator import Simulator
+from hdrive_mbs.diagnosis.simulator import AT_ONCE, Simulator
 from hdrive_mbs.diagnosis.trial import Trial
 
 FloatArray = npt.NDArray[np.float64]
@@ -123,14 +123,19 @@ def slopes_of(
         if hypothesis.clipped(moved)[k] == z[k]:  # at its upper limit
             moved[k], steps[k] = z[k] - step, -step
         points.append(moved)
-    plain = None if forces is not None and any(forces) else simulator.columns_at(hypothesis, points)
-    made = []
-    for k, motion in enumerate(motions):
-        base = _residuals(motion.trial, motion.columns, whiten[k])
-        found = columns_of(simulator, k, hypothesis, points, forces[k] if forces else ()) if plain is None else [item[k] for item in plain]
-        rows = [None if item is None else _residuals(motion.trial, item, whiten[k]) for item in found]
-        slopes = [np.zeros(base.shape) if row is None else (row - base) / step for row, step in zip(rows, steps, strict=True)]
-        made.append(np.array(slopes, np.float32))
+    bases = [_residuals(motion.trial, motion.columns, own) for motion, own in zip(motions, whiten, strict=True)]
+    made = [np.zeros((len(points), *base.shape), np.float32) for base in bases]
+    for first in range(0, len(points), AT_ONCE):  # the columns of all points at once take a hundred megabytes and more
+        some = points[first : first + AT_ONCE]
+        plain = None if forces is not None and any(forces) else simulator.columns_at(hypothesis, some)
+        for k, motion in enumerate(motions):
+            if plain is None:
+                found = columns_of(simulator, k, hypothesis, some, forces[k] if forces else ())
+            else:
+                found = [item[k] for item in plain]
+            for at, item in enumerate(found, first):
+                if item is not None:
+                    made[k][at] = (_residuals(motion.trial, item, whiten[k]) - bases[k]) / steps[at]
     return made
 
 
