@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.analysis.time_response import simulate
-from hdrive_mbs.compiled.let_go import let_go
 from hdrive_mbs.diagnosis.driven import start_of
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -117,7 +116,6 @@ class Verified:
 def verified(simulator: Simulator, fitted: Fitted) -> Verified:
     """How far the engine is from the compiled run of a fit, or why it cannot be asked."""
     simulator.forget()  # the engine needs the memory more
-    let_go()
     give_back()
     label = fitted.hypothesis.label
     try:

@@ -276,6 +276,17 @@ def test_rows_give_the_same_spectra_one_by_one_as_together(monkeypatch: pytest.M
         assert together_values[..., k] == pytest.approx(alone[..., k], abs=4.0 * float(np.finfo(np.float32).eps) * largest)
 
 
+def test_slopes_from_a_few_points_at_a_time_are_those_from_all_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = []
+    for at_once in (2, 1000):
+        monkeypatch.setattr(spectra_of_rows, "AT_ONCE", at_once)
+        found.append(localiser()._about.spectra[0].slopes)
+    few, together = found
+    assert len(few) == NOMINAL.size > 2
+    assert np.all(np.max(np.abs(few), axis=(1, 2)) > 0.0)
+    np.testing.assert_array_equal(few, together)
+
+
 def ringing() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Two oscillators of 300 and 700 rad/s with 0.5 % of critical damping, joined by what is read: x' = A x + B f, y = C x."""
     a = np.zeros((4, 4))

@@ -125,7 +125,7 @@ def slopes_of(
         points.append(moved)
     bases = [_residuals(motion.trial, motion.columns, own) for motion, own in zip(motions, whiten, strict=True)]
     made = [np.zeros((len(points), *base.shape), np.float32) for base in bases]
-    for first in range(0, len(points), AT_ONCE):  # the columns of all points at once take a hundred megabytes and more
+    for first in range(0, len(points), AT_ONCE):  # those of all points at once take 3 MB each on the rotor bench
         some = points[first : first + AT_ONCE]
         plain = None if forces is not None and any(forces) else simulator.columns_at(hypothesis, some)
         for k, motion in enumerate(motions):
