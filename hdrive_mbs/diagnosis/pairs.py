@@ -120,7 +120,7 @@ def moved(team: Team, simulator: Simulator, pairs: Sequence[Found], tried: Seque
         mine = full.added[k]
         for place in tried:
             if place.kind is type(mine.effect):
-                yield from (Added(effect, place.at, mine.name) for effect in dict.fromkeys((mine.effect, _plain(mine.effect))))
+                yield from (Added(effect, place.at, mine.name) for effect in dict.fromkeys((mine.effect, plain(mine.effect))))
 
     return replaced(team, simulator, pairs, elsewhere)
 
@@ -138,7 +138,7 @@ def replaced(
     pairs : at least one, fitted to the end;  others : of a hypothesis and the number of a cause in it, what is tried in its place
     by_law : whether two causes with other laws count as another pair
     """
-    names = _laws_of if by_law else _causes_of
+    names = _laws_of if by_law else causes_of
     best = min(pairs, key=lambda item: item.fitted.cost)
     full, z = best.fitted.hypothesis.rescaled(best.fitted.z)
     known = {names(item.fitted.hypothesis) for item in pairs}
@@ -150,8 +150,28 @@ def replaced(
             if names(hypothesis) in known or len(hypothesis.labels) < len(full.added):
                 continue
             tasks.append(Task(hypothesis, hypothesis.start(full.nominal_part(z)), None, FIRST, FINE))
-            law = type(added.effect).__name__
-            whose.append(Suspect(added.label, law, (hypothesis,), (hypothesis,)) if is_second else best.suspect)
+            whose.append(standing_for(hypothesis) if is_second else best.suspect)
+    return nearest(team, simulator, best, tasks, whose, names)
+
+
+def standing_for(hypothesis: Hypothesis) -> Suspect:
+    """The second cause of a pair, where that is an effect, as a suspect: the last one that was added."""
+    last = hypothesis.added[-1]
+    return Suspect(last.label, type(last.effect).__name__, (hypothesis,), (hypothesis,))
+
+
+def nearest(
+    team: Team,
+    simulator: Simulator,
+    best: Found,
+    tasks: Sequence[Task],
+    whose: Sequence[Suspect],
+    names: Callable[[Hypothesis], frozenset[object]],
+) -> list[Found]:
+    """Other pairs after their first steps, the best start of each, and those that come nearest after more.
+
+    best : the best pair so far;  tasks : first steps of others;  whose : second cause of each;  names : by which two pairs are one
+    """
     begun: dict[frozenset[object], Found] = {}
     for item in sorted(those_that_ran(whose, team.map(run_task, simulator, tasks)), key=lambda item: item.fitted.cost):
         begun.setdefault(names(item.fitted.hypothesis), item)
@@ -162,7 +182,7 @@ def replaced(
     return [*found, *those_that_ran([item.suspect for item in going], fits)]
 
 
-def _plain(effect: Effect) -> Effect:
+def plain(effect: Effect) -> Effect:
     """An effect with what has a default at its default: the rest was bent to fit another place."""
     given = {field.name: getattr(effect, field.name) for field in dataclasses.fields(effect) if is_needed(field)}
     try:
@@ -191,10 +211,11 @@ def contenders(team: Team, simulator: Simulator, pairs: Sequence[Found], first: 
 
 
 def _causes(pair: Found) -> frozenset[object]:
-    return _causes_of(pair.fitted.hypothesis)
+    return causes_of(pair.fitted.hypothesis)
 
 
-def _causes_of(hypothesis: Hypothesis) -> frozenset[object]:
+def causes_of(hypothesis: Hypothesis) -> frozenset[object]:
+    """What a hypothesis adds and lets loose, by family and place: by it two pairs count as one."""
     return frozenset((*hypothesis.labels, *hypothesis.loose))
 
 

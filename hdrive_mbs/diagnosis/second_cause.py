@@ -9,6 +9,7 @@ from functools import partial
 
 import numpy as np
 
+from hdrive_mbs.diagnosis.both_moved import both_moved
 from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import enough
 from hdrive_mbs.diagnosis.fit import Fitted
@@ -150,10 +151,24 @@ def second_cause(
         if found[0].fitted.hypothesis.labels != causes:
             found = _told_by_other_laws(team, coarse, found, first, everything)
     found = _exchanged_in_place(team, coarse, found, first, everything)
-    elsewhere = [] if team.deadline.passed("causes of the pair at other places") else moved(team, coarse, found, tried)
-    pairs = contenders(team, coarse, [*found, *elsewhere], first)
+    pairs = _elsewhere(team, coarse, found, first, tried, everything)
     others += alone(team, coarse, pairs[0], everything, first, {item.suspect.label for item in others})
     return pair, pairs, tuple(others)
+
+
+def _elsewhere(
+    team: Team,
+    coarse: Simulator,
+    found: tuple[Found, ...],
+    first: Found,
+    tried: Sequence[Candidate],
+    everything: Sequence[Suspect],
+) -> tuple[Found, ...]:
+    """With the causes of the best pair at other places, one of them or both."""
+    if team.deadline.passed("causes of the pair at other places"):
+        return contenders(team, coarse, found, first)
+    others = (*moved(team, coarse, found, tried), *both_moved(team, coarse, found, tried, everything))
+    return contenders(team, coarse, [*found, *others], first)
 
 
 def _laws(pair: Found) -> frozenset[tuple[Label, str]]:
