@@ -23,7 +23,7 @@ NAMED = 8.0
 def answer_of(case: str, finding: Finding, names: Names) -> dict[str, Any]:
     """The answer.
 
-    A claim without a name is answered "unknown", with its place first in ``where``.  If a cause with a name is tied with it, that
+    A claim without a name is answered "unknown", with its place first in ``where``, or the one where the gap lies instead of it.  If a cause with a name is tied with it, that
     one is claimed: the table of names says beforehand that it is more likely to be there, and the probabilities of what is tied
     are weighed by that (NAMED).  Of two claimed causes the one
     that explains more by itself decides: if it has a name, what has none beside it is left out; if not, the answer is "unknown".
@@ -160,6 +160,8 @@ def _where(finding: Finding, names: Names, claimed: list[Name]) -> list[dict[str
             continue
         located[names.place(at)] = located.get(names.place(at), 0.0) + probability
     unnamed = [] if claimed else [names.place_of(item.label) for item in finding.claimed]
+    if unnamed and finding.elsewhere:
+        unnamed = [names.place(finding.elsewhere), *unnamed]
     ranked = [] if finding.verdict == "none" else sorted(by_rank, key=lambda at: -by_rank[at])
     places = sorted(located, key=lambda at: -located[at])
     order = dict.fromkeys([*(at for _, at in claimed), *unnamed, *((*ranked, *places) if nothing else (*places, *ranked))])

@@ -24,7 +24,8 @@ class Finding:
 
     verdict : of the diagnosis;  claimed : causes of the claim, empty for "none" and "unknown"
     tied : labels that cannot be told from the claim;  ranking : probability of each label, ("none", "") and ("unknown", "") included
-    where : located place -> probability;  gap : "nominal", "refit", "effect", "floor"; empty where they are not known
+    where : located place -> probability;  elsewhere : place at which the gap lies though the claim, which leaves something, is at another
+    gap : "nominal", "refit", "effect", "floor"; empty where they are not known
     """
 
     verdict: str
@@ -32,13 +33,14 @@ class Finding:
     tied: tuple[Label, ...] = ()
     ranking: Mapping[Label, float] = field(default_factory=dict)
     where: Mapping[str, float] = field(default_factory=dict)
+    elsewhere: str = ""
     gap: Mapping[str, float] = field(default_factory=dict)
     seconds: float = 0.0
 
 
 def finding_of(diagnosis: Diagnosis) -> Finding:
     """What a diagnosis says."""
-    gap = diagnosis.gap
+    gap, other = diagnosis.gap, diagnosis.elsewhere
     figures = {"nominal": gap.nominal.value, "refit": gap.refit.value, "effect": gap.effect.value, "floor": gap.floor}
     return Finding(
         verdict=diagnosis.verdict,
@@ -46,6 +48,7 @@ def finding_of(diagnosis: Diagnosis) -> Finding:
         tied=diagnosis.indistinguishable,
         ranking={(cause.effect, cause.at): cause.probability for cause in diagnosis.ranking},
         where={place.at: place.probability for place in diagnosis.where},
+        elsewhere="" if other is None else other.at,
         gap={name: value for name, value in figures.items() if math.isfinite(value)},
         seconds=diagnosis.seconds,
     )

@@ -12,9 +12,10 @@ import hdrive_mbs as hm
 from benchmarks.withheld.finding import Claimed, Finding
 from benchmarks.withheld.names import Label
 from hdrive_mbs.diagnosis import verdict
+from hdrive_mbs.diagnosis.elsewhere import elsewhere, part_of
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.gather import Evidence
-from hdrive_mbs.diagnosis.result import Diagnosis
+from hdrive_mbs.diagnosis.result import Diagnosis, Place
 from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.unevenness import patches, unevenness
 from hdrive_mbs.diagnosis.verdict import Claim, judge
@@ -128,12 +129,15 @@ def finding_again(raw: Mapping[str, Any]) -> Finding:
     labels = () if fit is None or claim.kind in ("none", "unknown") else fit.labels
     before = {name: math.sqrt(raw[key]["held"]) for name, key in (("nominal", "nominal"), ("refit", "null"))}
     after = math.sqrt(fit.fitted.chi_held) if labels else before["refit"]
+    places = [Place(**{**item, "tied": tuple(item["tied"])}) for item in raw.get("places", ())]
+    other = elsewhere(places, {part_of(label[1]) for label in labels}, after)
     return Finding(
         verdict=claim.kind,
         claimed=tuple(Claimed(label=label) for label in labels),
         tied=claim.tied,
         ranking=claim.probabilities,
         where=raw.get("where", {}),
+        elsewhere="" if other is None else other.at,
         gap={**before, "effect": after, "floor": 1.0},
         seconds=raw.get("seconds", 0.0),
     )
@@ -141,7 +145,8 @@ def finding_again(raw: Mapping[str, Any]) -> Finding:
 
 def places_of(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """Located places as plain data."""
-    return [{"at": p.at, "probability": p.probability, "gain": p.gain, "share": p.share, "tied": list(p.tied)} for p in diagnosis.where]
+    kept = ("at", "probability", "gain", "share", "sensor")
+    return [{**{name: getattr(place, name) for name in kept}, "tied": list(place.tied)} for place in diagnosis.where]
 
 
 @contextmanager

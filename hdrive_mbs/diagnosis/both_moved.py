@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from hdrive_mbs.diagnosis.candidates import Candidate
+from hdrive_mbs.diagnosis.carried import carried
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.pairs import causes_of, nearest, standing_for
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -37,13 +38,16 @@ def both_moved(
     [part] = here
     known = {causes_of(item.fitted.hypothesis) for item in pairs}
     tasks, whose = [], []
+    network = simulator.trials[0].scene.network()
+    begins = {(item.at, item.kind): item.starts[0].effect for item in tried}
     for place in sorted({item.at for item in tried} - here):
-        admitted = all(any(item.kind is type(added.effect) and item.at == place for item in tried) for added in full.added)
+        own = [begins.get((place, type(item.effect))) for item in full.added]
         goes = _counterparts(full, part, place)
-        if not admitted or goes is None:
+        if None in own or goes is None:
             continue
         loose = {goes[name].name: width for name, width in full.loose.items()}
-        added = tuple(Added(item.effect, place, item.name) for item in full.added)
+        moves = zip(full.added, filter(None, own), strict=True)
+        added = tuple(Added(carried(item.effect, start, network, part, place), place, item.name) for item, start in moves)
         hypothesis = Hypothesis(full.factors, added, loose)
         suspect = _of_parameters(everything, loose) if best.suspect.law == PARAMETER else standing_for(hypothesis)
         if suspect is None or causes_of(hypothesis) in known:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from hdrive_mbs.diagnosis.carried import carried
 from hdrive_mbs.diagnosis.choosing import SEEN, beyond
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.ground import as_known
@@ -15,6 +16,7 @@ from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, Found, Task, further, ri
 from hdrive_mbs.diagnosis.verdict import left
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
+from hdrive_mbs.network.network import Network
 
 STEPS = 8
 """Joint steps of another law or place."""
@@ -156,23 +158,23 @@ def with_choices(effect: Effect, other: Effect) -> Effect:
         return effect
 
 
-def elsewhere(best: Found | None, base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:
+def elsewhere(best: Found | None, base: Fitted, everything: Sequence[Suspect], simulator: Simulator) -> list[tuple[Suspect, Task]]:
     """The law that did best with the values that it found, at the other places of its family; of a parameter the others, in place of it."""
     if best is None:
         return []
     if best.suspect.law == PARAMETER:
         return _other_parameters(best, base, everything)
-    fitted = best.fitted
+    fitted, network = best.fitted, simulator.trials[0].scene.network()
     tasks = []
     for suspect in everything:
         if suspect.law != best.suspect.law or suspect.label == best.suspect.label:
             continue
-        task = _moved_to(suspect, fitted, fitted, base)
+        task = _moved_to(suspect, fitted, fitted, base, network)
         tasks.append((suspect, replace(task, leading=fitted.chi_fit, beat=rivalling(fitted))))
     return tasks
 
 
-def others_there(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect]) -> list[tuple[Suspect, Task]]:
+def others_there(found: Sequence[Found], base: Fitted, everything: Sequence[Suspect], simulator: Simulator) -> list[tuple[Suspect, Task]]:
     """The best laws of other families, with the values that they found at other places, at the place of the best, where they were not
     fitted.
 
@@ -188,22 +190,24 @@ def others_there(found: Sequence[Found], base: Fitted, everything: Sequence[Susp
     here = {(suspect.label[0], suspect.law): suspect for suspect in everything if suspect.label[1] == place}
     known = {item.suspect.label for item in found}
     families = {best.suspect.label[0]}
+    network = simulator.trials[0].scene.network()
     tasks = []
     for item in found:
         suspect = here.get((item.suspect.label[0], item.suspect.law))
         if item.suspect.law == PARAMETER or suspect is None or suspect.label in known or suspect.label[0] in families:
             continue
         families.add(suspect.label[0])
-        task = _moved_to(suspect, item.fitted, best.fitted, base)
+        task = _moved_to(suspect, item.fitted, best.fitted, base, network)
         tasks.append((suspect, replace(task, leading=best.fitted.chi_fit, beat=rivalling(best.fitted))))
     return tasks
 
 
-def _moved_to(suspect: Suspect, told: Fitted, fitted: Fitted, base: Fitted) -> Task:
+def _moved_to(suspect: Suspect, told: Fitted, fitted: Fitted, base: Fitted, network: Network) -> Task:
     """A few steps of a law at a place with what its fit at another place told, from the parameters of a fit."""
-    values = told.hypothesis.rescaled(told.z)[0].added[-1].effect
+    there = told.hypothesis.rescaled(told.z)[0].added[-1]
     old = suspect.all[0]
-    added = (*old.added[:-1], Added(values, old.added[-1].at, old.added[-1].name))
+    *before, last = old.added
+    added = (*before, Added(carried(there.effect, last.effect, network, there.at, last.at), last.at, last.name))
     return _from(fitted, base, Hypothesis(old.factors, added, old.loose))
 
 

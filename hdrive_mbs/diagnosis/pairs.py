@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
 from hdrive_mbs.diagnosis.candidates import Candidate
+from hdrive_mbs.diagnosis.carried import carried
 from hdrive_mbs.diagnosis.choosing import SEEN
 from hdrive_mbs.diagnosis.from_the_best import values_of, with_values
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
@@ -116,11 +117,14 @@ def moved(team: Team, simulator: Simulator, pairs: Sequence[Found], tried: Seque
     pairs : at least one, fitted to the end;  tried : effects and places that are admitted
     """
 
+    network = simulator.trials[0].scene.network()
+
     def elsewhere(full: Hypothesis, k: int) -> Iterator[Added]:
         mine = full.added[k]
         for place in tried:
             if place.kind is type(mine.effect):
-                yield from (Added(effect, place.at, mine.name) for effect in dict.fromkeys((mine.effect, plain(mine.effect))))
+                effect = carried(mine.effect, place.starts[0].effect, network, mine.at, place.at)
+                yield from (Added(some, place.at, mine.name) for some in dict.fromkeys((effect, plain(effect))))
 
     return replaced(team, simulator, pairs, elsewhere)
 

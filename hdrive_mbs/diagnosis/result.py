@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.diagnosis.elsewhere import NOWHERE as NOWHERE
+from hdrive_mbs.diagnosis.elsewhere import elsewhere, part_of
 from hdrive_mbs.scene import Scene
 
 if TYPE_CHECKING:
@@ -76,10 +78,6 @@ class Cause:
     parameters: tuple[Estimate, ...] = ()
 
 
-NOWHERE = "nowhere"
-"""Name, among places, for an unknown signal at none of them."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class Place:
     """A place where an unknown force or error would explain residuals.
@@ -87,6 +85,7 @@ class Place:
     at : name in the scene;  probability : among all places;  gain : log likelihood against none
     share : of the energy of the gap that a signal there can explain (0 to 1);  tied : places that the records cannot tell from it
     parameter : nominal parameter of the place that explains the gap better, if it is off, than a signal there; empty if a signal does
+    sensor : whether the place is one that reads: the signal is an error of it
     """
 
     at: str
@@ -95,6 +94,7 @@ class Place:
     share: float
     tied: tuple[str, ...] = ()
     parameter: str = ""
+    sensor: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -309,6 +309,17 @@ class Diagnosis:
     def gap(self) -> Gap:
         """All records and columns together."""
         return self.gaps[0]
+
+    @property
+    def elsewhere(self) -> Place | None:
+        """Where the gap lies though nothing that is claimed sits there; None where the claim is not contradicted by its place.
+
+        Only of a claim that leaves more than noise: see ``hdrive_mbs/diagnosis/elsewhere.py``.
+        """
+        if not self.gaps:
+            return None
+        at = {part_of(cause.at) for cause in self.causes}
+        return elsewhere(self.where, at, self.gap.effect.value / self.gap.floor)
 
     @property
     def closed(self) -> float:

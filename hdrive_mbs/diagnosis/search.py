@@ -149,10 +149,11 @@ def search(
         more, _ = work.from_ground(held(simulator, base), base, [item for item in everything if item.label in likely or item.is_periodic])
         found = work.other_ways(cheapest([*found, *more]), base, everything)
     if not done and (how.laws > 1 or (found and found[0].fitted.chi_fit > FAR)):
-        moved = elsewhere(found[0] if found else None, base, everything) + (restarts(found, FAR) if how.laws > 1 and how.again else [])
-        found = cheapest([*found, *work.fitted(moved, "trying the best elsewhere")])
+        moved = elsewhere(found[0] if found else None, base, everything, simulator)
+        again = restarts(found, FAR) if how.laws > 1 and how.again else []
+        found = cheapest([*found, *work.fitted([*moved, *again], "trying the best elsewhere")])
         if how.laws > 1 and found and left(found[0].fitted) > above_noise(simulator):
-            found = cheapest([*found, *work.fitted(others_there(found, base, everything), "trying other causes there")])
+            found = cheapest([*found, *work.fitted(others_there(found, base, everything, simulator), "trying other causes there")])
         if how.laws > 1 and found and left(found[0].fitted) > SEEN:
             found = cheapest([*found, *work.fitted(other_laws(found, base, everything), "trying other laws there")])
         found = work.to_the_end(found)

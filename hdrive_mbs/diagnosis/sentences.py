@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
+from hdrive_mbs.diagnosis.elsewhere import EXCLUDED, LEAVES, part_of, somewhere_else
 from hdrive_mbs.diagnosis.readable import digits, interval, listed, named, percent, probability, with_unit
 from hdrive_mbs.diagnosis.result import NOWHERE, VERDICTS, Cause, Diagnosis, DomainBin, Estimate, Place, Separation
 from hdrive_mbs.diagnosis.unknowns import Factor
@@ -25,8 +26,8 @@ LEFT = (
     "What is left is noise by the verdict: no place and no part of the operating range is named,"
     " for those that fit noise best mean nothing (the JSON has them)."
 )
-CERTAIN, EXCLUDED = 0.9, 0.01
-"""Probabilities of a place from which a gap lies there, and up to which it does not."""
+CERTAIN = 0.9
+"""Probability of a place from which a gap lies there, against a law that is not exact."""
 MOST = 0.5
 """Share of the gap that is most of it."""
 LIKELY, UNLIKELY = 0.5, 0.1
@@ -89,18 +90,23 @@ def inexact(diagnosis: Diagnosis) -> str:
     if not diagnosis.causes or not diagnosis.gaps:
         return ""
     gap = diagnosis.gap
+    times = f"What is claimed leaves {digits(gap.effect.value / gap.floor, 3)} times the noise"
     if not gap.effect.value > REST * gap.floor:
-        return ""
+        other = diagnosis.elsewhere
+        if other is None:
+            return ""
+        at = listed(_claimed_at(diagnosis))
+        return f"{times}, and by its place the gap lies at {other.at}, not at {at}: the law that is claimed, or its place, may be wrong."
     what = "the law" if len(diagnosis.causes) == 1 else "one of the laws"
     return (
-        f"What is claimed leaves {digits(gap.effect.value / gap.floor, 3)} times the noise: {what} is not exact,"
+        f"{times}: {what} is not exact,"
         f" or there is another cause beside it. Look at what is left before you trust the identified values.{_elsewhere(diagnosis)}"
     )
 
 
 def _elsewhere(diagnosis: Diagnosis) -> str:
     """A warning where the gap lies at another place than all that is claimed."""
-    first = _somewhere_else(diagnosis, CERTAIN, EXCLUDED)
+    first = somewhere_else(diagnosis.where, _claimed_at(diagnosis), CERTAIN, EXCLUDED)
     if first is None:
         return ""
     at = listed(_claimed_at(diagnosis))
@@ -108,15 +114,7 @@ def _elsewhere(diagnosis: Diagnosis) -> str:
 
 
 def _claimed_at(diagnosis: Diagnosis) -> list[str]:
-    return sorted({cause.at.partition(".")[0] for cause in diagnosis.causes})
-
-
-def _somewhere_else(diagnosis: Diagnosis, sure: float, excluded: float) -> Place | None:
-    """The likeliest place of the gap, if that is as sure as this and all that is claimed sits at places that are excluded."""
-    at = _claimed_at(diagnosis)
-    own = max((place.probability for place in diagnosis.where if place.at.partition(".")[0] in at), default=0.0)
-    first = diagnosis.where[0] if diagnosis.where else None
-    return None if first is None or first.at == NOWHERE or first.probability < sure or own > excluded else first
+    return sorted({part_of(cause.at) for cause in diagnosis.causes})
 
 
 def gap_sentences(diagnosis: Diagnosis) -> tuple[str, ...]:
@@ -163,11 +161,11 @@ def where_sentences(diagnosis: Diagnosis, top: int | None = None) -> tuple[str, 
 
 def _fitting(diagnosis: Diagnosis) -> tuple[str, ...]:
     """That a cause which leaves noise alone is not refuted by a list that puts the gap elsewhere; nothing where there is none such."""
-    if diagnosis.verdict not in ("effect", "sensor") or not diagnosis.gaps or diagnosis.gap.effect.value > REST * diagnosis.gap.floor:
+    if diagnosis.verdict not in ("effect", "sensor") or not diagnosis.gaps or diagnosis.gap.effect.value > LEAVES * diagnosis.gap.floor:
         return ()
-    first = _somewhere_else(diagnosis, LIKELY, UNLIKELY)
     at = _claimed_at(diagnosis)
-    if first is None or first.parameter or first.share < MOST or any(place.partition(".")[0] in at for place in first.tied):
+    first = somewhere_else(diagnosis.where, at, LIKELY, UNLIKELY)
+    if first is None or first.parameter or first.share < MOST or any(part_of(place) in at for place in first.tied):
         return ()
     return (
         f"What is claimed at {listed(at)} leaves noise alone and is not in doubt for its rank here: this list asks where one signal of"

@@ -13,7 +13,7 @@ from hdrive_mbs.diagnosis.locate.likelihood import Directions, Likelihood, direc
 from hdrive_mbs.diagnosis.locate.line import Line, line
 from hdrive_mbs.diagnosis.locate.motion import KnownForce, Motion, motion_of
 from hdrive_mbs.diagnosis.locate.response import Response, response
-from hdrive_mbs.diagnosis.locate.sources import TURNING
+from hdrive_mbs.diagnosis.locate.sources import TURNING, Source
 from hdrive_mbs.diagnosis.locate.spectra import Spectra, spectra
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.errors import LawError, ParameterError, SimulationError
@@ -68,7 +68,11 @@ class About:
 
     def at(self, name: str) -> str:
         """The place of a source."""
-        return next(item.sources[name].at for item in self.responses if name in item.sources)
+        return self.source(name).at
+
+    def source(self, name: str) -> Source:
+        """The source of a name."""
+        return next(item.sources[name] for item in self.responses if name in item.sources)
 
 
 def linearised(

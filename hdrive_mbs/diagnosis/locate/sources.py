@@ -44,6 +44,11 @@ class Source:
         """Of the source among all."""
         return f"{self.at}, {self.way}" if self.way else self.at
 
+    @property
+    def is_sensor(self) -> bool:
+        """Whether it is an error of what is read, and no force."""
+        return not self.along
+
 
 @dataclass(frozen=True)
 class Push:
