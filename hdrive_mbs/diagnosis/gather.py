@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from hdrive_mbs.diagnosis.again_elsewhere import again_elsewhere
 from hdrive_mbs.diagnosis.all_samples import CANNOT_RUN, as_given, on_all_samples
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate
@@ -22,6 +23,7 @@ from hdrive_mbs.diagnosis.search import Search, fit_nominal, search
 from hdrive_mbs.diagnosis.second_cause import LEFT, second_cause, wants_second
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.stages import Report, under
+from hdrive_mbs.diagnosis.suspects import suspects
 from hdrive_mbs.diagnosis.tasks import Found, cheapest, proven, scored
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.together import Together
@@ -196,6 +198,9 @@ def gather(
     there = () if known else _there(team, coarse, null, single, place, tried, said)
     single = _with(single, there)
     pair, double, others = second_cause(team, coarse, null, groups, tried, single, there, known, said)
+    if others and not team.deadline.passed("the best cause without the other one, at other places"):
+        everything = suspects(null.hypothesis, groups, tried)
+        others = (*others, *again_elsewhere(team, coarse, null, everything, single.found[0] if single.found else None, others))
     single = _with(single, others)
     if double and not wants_second(null, single.found[0], int(np.count_nonzero(coarse.fit))):
         double = ()  # its second cause stood beside a wrong first one: had it been found at once, no other would have been looked for
