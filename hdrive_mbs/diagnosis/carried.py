@@ -8,12 +8,13 @@ from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.network.elements import Connection
 from hdrive_mbs.network.network import Network
 
-TIMES = ("s", "1/s")
-"""Units of what is the same on both sides of a gear."""
+SAME = ("1", "s", "1/s")
+"""Units of what is the same on both sides of a gear: exponents, shares and times.  What is in rad or rad/s may be or not (a phase and a
+frequency are, a play and a speed of friction are not)."""
 
 
 def carried(effect: Effect, own: Effect, network: Network, at: str, to: str) -> Effect:
-    """An effect as it is found at a place, for another one: all of it where both turn alike, across a gear its times alone.
+    """An effect as it is found at a place, for another one: all of it where both turn alike, across a gear what is the same on both sides.
 
     A gear of ratio n divides angles by n and multiplies torques by it, so that compliances differ by n^2: what was found for an input
     shaft that creeps, 2.3e-3 rad/(N m), is 4,300 times that of the output shaft which did creep, and no fit came down from there; from
@@ -24,7 +25,7 @@ def carried(effect: Effect, own: Effect, network: Network, at: str, to: str) -> 
     before, after = turns(network, at), turns(network, to)
     if before is None or after is None or abs(before) == abs(after):
         return effect
-    values = {name: getattr(effect, name) for name, quantity in searched_fields(type(effect)).items() if quantity.unit in TIMES}
+    values = {name: getattr(effect, name) for name, quantity in searched_fields(type(effect)).items() if quantity.unit in SAME}
     try:
         return own.replacing(**values)
     except ParameterError:

@@ -61,7 +61,7 @@ class Evidence:
 
 
 def serious(labels: Sequence[Found]) -> tuple[Found, ...]:
-    """The best labels, and those behind them that the search could not tell from the first, or that fit as well as it does.
+    """The best labels, and those behind them that the search could not tell from the first, or that fit better than it does.
 
     What a law with more freedom is taken off for that weighs less where all samples speak: drag that warms, in a gap of 4e-4 of the mean
     square, was put to the flexspline with log odds of 2.9 for -4.0 of the motor, though less is left there, and with 122.3 and 122.0 on all
@@ -72,7 +72,7 @@ def serious(labels: Sequence[Found]) -> tuple[Found, ...]:
     if not labels:
         return ()
     best, *others = labels
-    close = [item for item in others if item.log_odds > best.log_odds - TIED or item.fitted.chi_fit <= best.fitted.chi_fit]
+    close = [item for item in others if item.log_odds > best.log_odds - TIED or item.fitted.chi_fit < best.fitted.chi_fit]
     chosen = [best, *close][:ALIKE]
     return tuple(item for item in labels if item in chosen or item in labels[:SINGLES])
 

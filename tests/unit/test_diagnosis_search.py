@@ -659,7 +659,7 @@ def test_other_parameters_are_tried_in_place_of_the_one_that_did_best(simulator:
     one, other = (item for item in everything if item.law == "parameter")
     z = one.all[0].start(np.full(len(factors), -2.0))
     best = Found(one, fit(simulator, one.all[0], z, steps=0))
-    [(suspect, task)] = elsewhere(best, base, everything)
+    [(suspect, task)] = elsewhere(best, base, everything, simulator)
     assert suspect is other
     assert task.hypothesis is other.all[0]
     assert task.beat == pytest.approx(best.fitted.cost + RIVAL)
@@ -1098,6 +1098,7 @@ def test_the_first_of_two_causes_is_looked_for_again_beside_the_second_where_bot
         "recast": lambda *some: [],
         "with_other_laws": lambda *some: [],
         "moved": lambda team, coarse, some, tried: ends.append(some) or [],
+        "both_moved": lambda *some: [],
         "alone": lambda *some: [] if some[5:] else [second, first_alone],
         "contenders": lambda team, coarse, some, first: tuple(sorted(some, key=lambda item: item.fitted.cost))[:1],
     }.items():
@@ -1188,3 +1189,12 @@ def test_places_that_the_search_cannot_tell_apart_all_go_on_to_all_samples(simul
     labels = [Found(Suspect(("drag", f"place {k}"), "A", (hypothesis,), (hypothesis,)), fitted, some) for k, some in enumerate(odds)]
     assert serious(labels) == tuple(labels[:kept])
     assert serious([]) == ()
+
+
+def test_a_place_that_fits_better_than_the_best_goes_on_to_all_samples_whatever_its_log_odds(simulator: Simulator) -> None:
+    hypothesis = Hypothesis(factors_of(BENCH))
+    fitted = fit(simulator, hypothesis, np.zeros(hypothesis.size), steps=0)
+    better = dataclasses.replace(fitted, chi_fit=0.99 * fitted.chi_fit)
+    fits = [fitted, fitted, fitted, fitted, better, fitted]
+    labels = [Found(Suspect(("drag", f"place {k}"), "A", (hypothesis,), (hypothesis,)), item, -7.0 * k) for k, item in enumerate(fits)]
+    assert serious(labels) == (*labels[:SINGLES], labels[4])

@@ -22,6 +22,7 @@ from hdrive_mbs.effects.effect import Effect
 from tests.unit.diagnosis_cases import bench, quiet, standing
 
 BENCH = bench()
+SIMULATOR = Simulator(BENCH.trials(quiet()[0]), 2.5e-4, 16)
 NOMINAL = Hypothesis(factors_of(BENCH))
 EVERYTHING = suspects(NOMINAL, {}, candidates(BENCH.scene, [hm.FrictionByAngle, hm.DahlFriction, hm.PreslidingFriction, hm.MeshFriction]))
 BY_ANGLE = hm.FrictionByAngle(mean=0.4)
@@ -39,17 +40,21 @@ def found(effect: Effect, place: str, cost: float) -> Found:
 
 
 def test_a_friction_of_the_motor_is_tried_at_the_load_where_the_best_sits() -> None:
+    """Across the gear: with the exponent that was found, and torque and angle as they begin at the load."""
     best, second = found(BY_ANGLE, "load", 0.1), found(DAHL, "motor", 0.2)
     worse = found(hm.PreslidingFriction(coulomb=0.5, presliding=1e-3), "motor", 0.3)
-    [(suspect, task)] = others_there([best, second, worse], fitted(NOMINAL, 0.9), EVERYTHING)
+    [(suspect, task)] = others_there([best, second, worse], fitted(NOMINAL, 0.9), EVERYTHING, SIMULATOR)
     assert (suspect.label, suspect.law) == (("friction", "load"), "DahlFriction")
     added = task.hypothesis.added[-1]
     values = {path.rpartition(".")[2]: value for path, value in task.hypothesis.values(task.z).items() if path.startswith(f"{added.name}.")}
+    own = suspect.all[0].added[-1].effect
+    assert isinstance(own, hm.DahlFriction)
     assert {name: values[name] for name in ("coulomb", "presliding", "exponent")} == {
-        "coulomb": pytest.approx(0.7),
-        "presliding": pytest.approx(2e-3),
+        "coulomb": pytest.approx(own.coulomb),
+        "presliding": pytest.approx(own.presliding),
         "exponent": pytest.approx(1.6),
     }
+    assert own.coulomb != 0.7 and own.presliding != 2e-3 and own.exponent != 1.6
     nominal = task.hypothesis.nominal_part(task.z)
     np.testing.assert_allclose(nominal, best.fitted.hypothesis.nominal_part(best.fitted.z), rtol=1e-12)
     assert task.leading == pytest.approx(1.1)
@@ -59,12 +64,12 @@ def test_a_friction_of_the_motor_is_tried_at_the_load_where_the_best_sits() -> N
 def test_what_was_fitted_there_or_cannot_sit_there_is_not_tried_again() -> None:
     best, second, there = found(BY_ANGLE, "load", 0.1), found(DAHL, "motor", 0.2), found(DAHL, "load", 0.3)
     base = fitted(NOMINAL, 0.9)
-    assert others_there([best, second, there], base, EVERYTHING) == []
-    assert others_there([best, found(hm.MeshFriction(loss_factor=0.1), "gear", 0.2)], base, EVERYTHING) == []
-    assert others_there([best, found(BY_ANGLE, "motor", 0.2)], base, EVERYTHING) == []  # ``elsewhere`` has done that
+    assert others_there([best, second, there], base, EVERYTHING, SIMULATOR) == []
+    assert others_there([best, found(hm.MeshFriction(loss_factor=0.1), "gear", 0.2)], base, EVERYTHING, SIMULATOR) == []
+    assert others_there([best, found(BY_ANGLE, "motor", 0.2)], base, EVERYTHING, SIMULATOR) == []  # ``elsewhere`` has done that
     parameter = dataclasses.replace(best, suspect=dataclasses.replace(best.suspect, law=PARAMETER))
-    assert others_there([parameter, second], base, EVERYTHING) == []
-    assert others_there([], base, EVERYTHING) == []
+    assert others_there([parameter, second], base, EVERYTHING, SIMULATOR) == []
+    assert others_there([], base, EVERYTHING, SIMULATOR) == []
 
 
 def test_noise_lies_below_one_standard_deviation_five_times_in_six() -> None:

@@ -186,6 +186,7 @@ def test_a_second_cause_is_followed_up_where_it_takes_most_of_little_or_a_part_o
     named("recast", [])
     named("with_other_laws", [])
     named("moved", [])
+    named("both_moved", [])
     named("contenders", (two,))
     search, pairs = second_to(simulator, null, one)
     assert ("search" in asked) is (exchanged is not None)
@@ -217,7 +218,7 @@ def test_laws_and_causes_of_a_pair_are_exchanged_as_long_as_it_leaves_something_
     better = [] if recast_leaves is None else [found(base, (DRAG, other), recast_leaves, 61_200.0)]
     asked: list[str] = []
     monkeypatch.setattr(second_cause, "joined", lambda *some: [pair])
-    for name in ("swapped", "alone", "moved"):
+    for name in ("swapped", "alone", "moved", "both_moved"):
         monkeypatch.setattr(second_cause, name, lambda *some: [])
     monkeypatch.setattr(second_cause, "with_other_laws", lambda *some: asked.append("laws") or [])
     monkeypatch.setattr(second_cause, "recast", lambda *some: asked.append("causes") or better)
@@ -252,7 +253,7 @@ def test_other_laws_of_what_was_put_together_come_before_a_search_among_everythi
     monkeypatch.setattr(second_cause, "joined", lambda *some: [pair])
     monkeypatch.setattr(second_cause, "with_other_laws", lambda *some: asked.append("laws") or [told])
     monkeypatch.setattr(second_cause, "search", search)
-    for name in ("swapped", "moved", "recast", "alone"):
+    for name in ("swapped", "moved", "both_moved", "recast", "alone"):
         monkeypatch.setattr(second_cause, name, lambda *some: [])
     monkeypatch.setattr(second_cause, "contenders", cheapest_first)
     _, pairs = second_to(simulator, null, one)
@@ -281,7 +282,7 @@ def test_the_first_cause_is_looked_for_again_only_where_other_laws_of_the_pair_l
     monkeypatch.setattr(second_cause, "with_other_laws", lambda *some: asked.append("laws") or [told])
     monkeypatch.setattr(second_cause, "alone", lambda *some: [found(base, (RIPPLE,), 200.0, 1_000.0)])
     monkeypatch.setattr(second_cause, "search", lambda *some, **more: asked.append("first again") or Search(base, ()))
-    for name in ("swapped", "moved", "recast"):
+    for name in ("swapped", "moved", "both_moved", "recast"):
         monkeypatch.setattr(second_cause, name, lambda *some: [])
     monkeypatch.setattr(second_cause, "contenders", cheapest_first)
     _, pairs = second_to(simulator, null, one)
@@ -304,7 +305,7 @@ def test_everything_is_looked_at_beside_the_first_where_the_same_phenomenon_else
     asked: list[str] = []
     monkeypatch.setattr(second_cause, "joined", lambda *some: [known])
     monkeypatch.setattr(second_cause, "search", lambda *some, **more: asked.append("search") or Search(base, (right,)))
-    for name in ("swapped", "alone", "moved"):
+    for name in ("swapped", "alone", "moved", "both_moved"):
         monkeypatch.setattr(second_cause, name, lambda *some: [])
     monkeypatch.setattr(second_cause, "contenders", cheapest_first)
     _, pairs = second_to(simulator, null, one)

@@ -220,6 +220,13 @@ def test_what_two_causes_share_counts_once() -> None:
     assert sum(item["probability"] for item in answer["ranking"]) == pytest.approx(1.0)
 
 
+def test_a_claim_without_a_name_gives_way_to_the_place_where_the_gap_lies_instead() -> None:
+    where = {"motor": 0.998, "load": 0.001}
+    for effect, at in (("thermal_drift", ["motor", "load"]), ("friction", ["load", "motor"])):  # the second one has a name
+        answer = answer_of("drive-c01", finding("effect", (effect, "load"), where=where, elsewhere="motor"), DRIVE)
+        assert [item["at"] for item in answer["where"]] == at
+
+
 def test_no_claim_names_places_only_where_something_was_located() -> None:
     quiet = answer_of("drive-c01", finding("none", ranking={("none", ""): 0.9, ("friction", "load"): 0.1}), DRIVE)
     lost = answer_of("drive-c01", finding("unknown", ranking={("unknown", ""): 0.9, ("friction", "load"): 0.1}, where={"gear": 0.8}), DRIVE)
