@@ -23,10 +23,10 @@ NAMED = 8.0
 def answer_of(case: str, finding: Finding, names: Names) -> dict[str, Any]:
     """The answer.
 
-    A claim without a name is answered "unknown", with its place first in ``where``, or the one where the gap lies instead of it.  If a cause with a name is tied with it, that
-    one is claimed: the table of names says beforehand that it is more likely to be there, and the probabilities of what is tied
-    are weighed by that (NAMED).  Of two claimed causes the one
-    that explains more by itself decides: if it has a name, what has none beside it is left out; if not, the answer is "unknown".
+    A claim without a name is answered "unknown", with its place first in ``where``, or before it the one where the gap lies instead of it.
+    If a cause with a name is tied with it, that one is claimed: the table of names says beforehand that it is more likely to be there, and
+    the probabilities of what is tied are weighed by that (NAMED).  Of two claimed causes the one that explains more by itself decides: if
+    it has a name, what has none beside it is left out; if not, the answer is "unknown".
     """
     claimed = names.joined(_named(finding, names))
     if len(finding.claimed) == 1 and finding.tied:

@@ -26,6 +26,7 @@ from hdrive_mbs.diagnosis.stages import Report, under
 from hdrive_mbs.diagnosis.suspects import suspects
 from hdrive_mbs.diagnosis.tasks import Found, cheapest, proven, scored
 from hdrive_mbs.diagnosis.team import Team
+from hdrive_mbs.diagnosis.tied_places import tied_places
 from hdrive_mbs.diagnosis.together import Together
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import TIED, left, takes_most
@@ -198,12 +199,13 @@ def gather(
     there = () if known else _there(team, coarse, null, single, place, tried, said)
     single = _with(single, there)
     pair, double, others = second_cause(team, coarse, null, groups, tried, single, there, known, said)
+    everything = suspects(null.hypothesis, groups, tried)
     if others and not team.deadline.passed("the best cause without the other one, at other places"):
-        everything = suspects(null.hypothesis, groups, tried)
         others = (*others, *again_elsewhere(team, coarse, null, everything, single.found[0] if single.found else None, others))
     single = _with(single, others)
     if double and not wants_second(null, single.found[0], int(np.count_nonzero(coarse.fit))):
         double = ()  # its second cause stood beside a wrong first one: had it been found at once, no other would have been looked for
+    single = _with(single, tied_places(team, coarse, null, everything, single.found, serious(single.labels)))
     ones = (*serious(single.labels), *close_laws(single.found))
     last = on_all_samples(team, fine, null, [item.fitted for item in (*ones, *double)], place, partial(said, "all samples"))
     final = [
