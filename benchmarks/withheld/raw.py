@@ -130,7 +130,8 @@ def finding_again(raw: Mapping[str, Any]) -> Finding:
     before = {name: math.sqrt(raw[key]["held"]) for name, key in (("nominal", "nominal"), ("refit", "null"))}
     after = math.sqrt(fit.fitted.chi_held) if labels else before["refit"]
     places = [Place(**{**item, "tied": tuple(item["tied"])}) for item in raw.get("places", ())]
-    other = elsewhere(places, {part_of(label[1]) for label in labels}, after)
+    at = {part_of(label[1]) for label in labels}
+    other = elsewhere(places, at, after, {"wave_generator"} if "gear" in at else ())
     return Finding(
         verdict=claim.kind,
         claimed=tuple(Claimed(label=label) for label in labels),

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hdrive_mbs.diagnosis.elsewhere import NOWHERE as NOWHERE
-from hdrive_mbs.diagnosis.elsewhere import elsewhere, part_of
+from hdrive_mbs.diagnosis.elsewhere import elsewhere, part_of, wave_generators
 from hdrive_mbs.scene import Scene
 
 if TYPE_CHECKING:
@@ -319,7 +319,7 @@ class Diagnosis:
         if not self.gaps:
             return None
         at = {part_of(cause.at) for cause in self.causes}
-        return elsewhere(self.where, at, self.gap.effect.value / self.gap.floor)
+        return elsewhere(self.where, at, self.gap.effect.value / self.gap.floor, wave_generators(self.scene.network(), at))
 
     @property
     def closed(self) -> float:

@@ -7,8 +7,9 @@ import dataclasses
 import pytest
 
 from hdrive_mbs.diagnosis import sentences
-from hdrive_mbs.diagnosis.elsewhere import LEAVES, elsewhere
+from hdrive_mbs.diagnosis.elsewhere import LEAVES, elsewhere, wave_generators
 from hdrive_mbs.diagnosis.result import NOWHERE, Diagnosis, Place
+from models import drive_bench
 from tests.unit import diagnosis_samples
 
 ROTOR = Place(at="rotor_2", probability=0.996, gain=900.0, share=0.9)
@@ -53,3 +54,12 @@ def test_the_report_doubts_a_claim_by_its_place(left: float, doubted: bool) -> N
 
 def test_without_stretches_held_out_nothing_is_doubted() -> None:
     assert dataclasses.replace(_claimed(1.07), gaps=()).elsewhere is None
+
+
+def test_friction_of_the_teeth_is_not_doubted_by_the_wave_generator_that_it_brakes() -> None:
+    network = drive_bench.bench().scene.network()
+    braked = dataclasses.replace(ROTOR, at="wave_generator"), dataclasses.replace(SUPPORT, at="gear")
+    assert wave_generators(network, {"gear"}) == {"wave_generator"}
+    assert wave_generators(network, {"input_shaft", "load"}) == frozenset()
+    assert elsewhere(braked, {"gear"}, 1.06) is braked[0]
+    assert elsewhere(braked, {"gear"}, 1.06, {"wave_generator"}) is None
