@@ -26,7 +26,7 @@ def _part(at: str) -> str:
 
 
 def _contradicted() -> list[tuple[float, bool, bool, str, str]]:
-    """Of each claim that another place contradicts: what it leaves [times the noise], whether it and whether the list is right, law, place."""
+    """Of each claim that a place contradicts: what it leaves [times the noise], whether it and whether the list is right, law, place."""
     found = []
     for name in SETS:
         answers = {item["case"]: item for item in _read(name, "answers.json")}
