@@ -13,7 +13,7 @@ from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.choosing import SEEN, above_noise, beyond, enough, leaves, not_begun, passed_over, picked, spread_out, worth
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.force_orders import StandsOut
-from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, others_there, restarts, twins, unfinished
+from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, laws_of_the_next, other_laws, others_there, restarts, twins, unfinished
 from hdrive_mbs.diagnosis.ground import held, is_bent, screen_from
 from hdrive_mbs.diagnosis.hops import settled
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
@@ -268,6 +268,9 @@ class _Work:
         inexact = is_inexact(found, base)
         if inexact:
             found = cheapest([*found, *self.fitted(other_laws(found, base, everything), "trying other laws of the best")])
+            if is_inexact(found, base) and self.how.laws > 1:
+                asked = laws_of_the_next(found, base, everything)
+                found = cheapest([*found, *self.fitted(asked, "trying laws of the next best")])
         asked = from_other_starts(found, everything, self._elsewhere, near=not inexact)
         if asked and inexact and self.team.deadline.passed("laws of the best cause begun elsewhere"):
             return found
