@@ -52,6 +52,7 @@ def full(bench: str, folder: Path, workers: int = 1, search_seconds: float | Non
     with Memory() as memory:
         diagnosis = diagnose(known, records_of(folder), workers=workers, pictures=False, watch=kept.append, search_seconds=search_seconds)
     evidence: Evidence = kept[0]
+    finding = finding_of(diagnosis)
     raw = {
         "case": folder.name,
         "bench": bench,
@@ -61,11 +62,12 @@ def full(bench: str, folder: Path, workers: int = 1, search_seconds: float | Non
         **raw_of(evidence, known.groups),
         "where": {place.at: place.probability for place in diagnosis.where},
         "places": places_of(diagnosis),
+        "elsewhere": finding.elsewhere,
         "verdict": diagnosis.verdict,
         "notes": list(diagnosis.notes),
         "warnings": list(diagnosis.warnings),
     }
-    return Solved(answer=answer_of(folder.name, finding_of(diagnosis), names_of(bench)), raw=raw)
+    return Solved(answer=answer_of(folder.name, finding, names_of(bench)), raw=raw)
 
 
 METHODS: dict[str, str] = {

@@ -12,10 +12,9 @@ import hdrive_mbs as hm
 from benchmarks.withheld.finding import Claimed, Finding
 from benchmarks.withheld.names import Label
 from hdrive_mbs.diagnosis import verdict
-from hdrive_mbs.diagnosis.elsewhere import elsewhere, part_of
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.gather import Evidence
-from hdrive_mbs.diagnosis.result import Diagnosis, Place
+from hdrive_mbs.diagnosis.result import Diagnosis
 from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.unevenness import patches, unevenness
 from hdrive_mbs.diagnosis.verdict import Claim, judge
@@ -129,16 +128,13 @@ def finding_again(raw: Mapping[str, Any]) -> Finding:
     labels = () if fit is None or claim.kind in ("none", "unknown") else fit.labels
     before = {name: math.sqrt(raw[key]["held"]) for name, key in (("nominal", "nominal"), ("refit", "null"))}
     after = math.sqrt(fit.fitted.chi_held) if labels else before["refit"]
-    places = [Place(**{**item, "tied": tuple(item["tied"])}) for item in raw.get("places", ())]
-    at = {part_of(label[1]) for label in labels}
-    other = elsewhere(places, at, after, {"wave_generator"} if "gear" in at else ())
     return Finding(
         verdict=claim.kind,
         claimed=tuple(Claimed(label=label) for label in labels),
         tied=claim.tied,
         ranking=claim.probabilities,
         where=raw.get("where", {}),
-        elsewhere="" if other is None else other.at,
+        elsewhere=raw.get("elsewhere", ""),
         gap={**before, "effect": after, "floor": 1.0},
         seconds=raw.get("seconds", 0.0),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from hdrive_mbs.diagnosis.elsewhere import EXCLUDED, LEAVES, part_of, somewhere_else
+from hdrive_mbs.diagnosis.elsewhere import EXCLUDED, LEAVES, part_of, somewhere_else, wave_generators
 from hdrive_mbs.diagnosis.readable import digits, interval, listed, named, percent, probability, with_unit
 from hdrive_mbs.diagnosis.result import NOWHERE, VERDICTS, Cause, Diagnosis, DomainBin, Estimate, Place, Separation
 from hdrive_mbs.diagnosis.unknowns import Factor
@@ -106,11 +106,11 @@ def inexact(diagnosis: Diagnosis) -> str:
 
 def _elsewhere(diagnosis: Diagnosis) -> str:
     """A warning where the gap lies at another place than all that is claimed."""
-    first = somewhere_else(diagnosis.where, _claimed_at(diagnosis), CERTAIN, EXCLUDED)
-    if first is None:
+    at = _claimed_at(diagnosis)
+    first = somewhere_else(diagnosis.where, at, CERTAIN, EXCLUDED)
+    if first is None or part_of(first.at) in wave_generators(diagnosis.scene.network(), at):
         return ""
-    at = listed(_claimed_at(diagnosis))
-    return f" By its place the gap lies at {first.at}, not at {at}: a cause there is likelier than what is claimed."
+    return f" By its place the gap lies at {first.at}, not at {listed(at)}: a cause there is likelier than what is claimed."
 
 
 def _claimed_at(diagnosis: Diagnosis) -> list[str]:

@@ -63,3 +63,14 @@ def test_friction_of_the_teeth_is_not_doubted_by_the_wave_generator_that_it_brak
     assert wave_generators(network, {"input_shaft", "load"}) == frozenset()
     assert elsewhere(braked, {"gear"}, 1.06) is braked[0]
     assert elsewhere(braked, {"gear"}, 1.06, {"wave_generator"}) is None
+
+
+@pytest.mark.parametrize("left", [1.07, 27.0])
+@pytest.mark.parametrize(("gear", "doubted"), [("gear", False), ("load", True)])
+def test_the_report_does_not_doubt_friction_of_the_teeth_either(left: float, gear: str, doubted: bool) -> None:
+    """Claimed at the gear, located at the wave generator."""
+    found = _claimed(left)
+    [cause] = found.causes
+    where = (dataclasses.replace(ROTOR, at="wave_generator"), dataclasses.replace(SUPPORT, at=gear))
+    again = dataclasses.replace(found, causes=(dataclasses.replace(cause, at=gear),), where=where)
+    assert ("the gap lies at wave_generator" in sentences.inexact(again)) == doubted

@@ -149,9 +149,11 @@ def test_a_parameter_far_beyond_its_tolerance_points_at_its_part() -> None:
 def test_an_error_of_a_sensor_is_found_at_the_sensor() -> None:
     # 2e-5 rad is 13 standard deviations of the encoder's noise; no force moves the load without the torque sensor seeing it
     simulator = recorded(error=("load_angle", 2e-5 * np.sin(45.0 * TIMES)))
-    best = locate(simulator, fitted(simulator))[0]
+    places = locate(simulator, fitted(simulator))
+    best = places[0]
     assert best.at == "load_encoder"
     assert best.probability > 0.9
+    assert {place.at for place in places if place.sensor} == {"load_encoder", "motor_encoder", "torque_sensor"}
 
 
 def test_motor_and_wave_generator_are_tied_where_the_shaft_between_them_is_stiff() -> None:

@@ -170,6 +170,7 @@ def test_a_surface_that_is_not_round_is_found_at_the_sensors_of_its_station() ->
     best = located.places()[0]
     assert best.at == "rotor_1.sensors"
     assert best.probability > 0.9
+    assert best.sensor
     courses = {course.way: course.force for course in located.force(best.at)}
     inner = slice(600, 5400)
     for column, error in errors.items():

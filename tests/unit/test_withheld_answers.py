@@ -227,6 +227,13 @@ def test_a_claim_without_a_name_gives_way_to_the_place_where_the_gap_lies_instea
         assert [item["at"] for item in answer["where"]] == at
 
 
+def test_a_verdict_that_is_given_again_keeps_the_place_where_the_gap_was_said_to_lie() -> None:
+    own = Path(__file__).parents[2] / "benchmarks" / "withheld" / "own"
+    raw = json.loads((own / "rotor_31" / "raw" / "rotor-c19.json").read_text("utf-8"))
+    assert finding_again(raw).elsewhere == ""  # was not kept yet
+    assert finding_again(raw | {"elsewhere": "rotor_1"}).elsewhere == "rotor_1"
+
+
 def test_no_claim_names_places_only_where_something_was_located() -> None:
     quiet = answer_of("drive-c01", finding("none", ranking={("none", ""): 0.9, ("friction", "load"): 0.1}), DRIVE)
     lost = answer_of("drive-c01", finding("unknown", ranking={("unknown", ""): 0.9, ("friction", "load"): 0.1}, where={"gear": 0.8}), DRIVE)

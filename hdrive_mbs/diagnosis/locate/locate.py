@@ -259,17 +259,8 @@ class Localiser:
         made = [Place(at=NOWHERE, probability=chances[NOWHERE], gain=0.0, share=0.0)]
         for item in self._tried:
             chance, others = chances[item.at], tied.get(item.at, ())
-            made.append(
-                Place(
-                    at=item.at,
-                    probability=chance,
-                    gain=item.gain,
-                    share=self._share(item),
-                    tied=others,
-                    parameter=item.loose,
-                    sensor=item.about.source(item.name).is_sensor,
-                )
-            )
+            place = Place(at=item.at, probability=chance, gain=item.gain, share=self._share(item), tied=others, parameter=item.loose)
+            made.append(replace(place, sensor=item.about.source(item.name).is_sensor))
         return tuple(sorted(made, key=lambda place: (-place.probability, -place.gain)))
 
     @property
