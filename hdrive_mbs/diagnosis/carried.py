@@ -18,7 +18,8 @@ def carried(effect: Effect, own: Effect, network: Network, at: str, to: str) -> 
 
     A gear of ratio n divides angles by n and multiplies torques by it, so that compliances differ by n^2: what was found for an input
     shaft that creeps, 2.3e-3 rad/(N m), is 4,300 times that of the output shaft which did creep, and no fit came down from there; from
-    the least typical one it takes 11 steps (an own case, `--bench drive --unlisted --cases 20 --seed 301`, c16; by a script that is not kept).
+    the least typical one it takes 11 steps (an own case, `--bench drive --unlisted --cases 20 --seed 301`, c16; by a script that is not
+    kept).
 
     own : with what it begins with at the other place
     """
