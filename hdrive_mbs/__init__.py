@@ -156,6 +156,8 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.creep": ("Creep",),
     "effects.loose_bolt": ("LooseBolt",),
     "effects.magnetic_pull": ("MagneticPull",),
+    "effects.pulsating_pull": ("PulsatingPull",),
+    "effects.pull_effect": ("PullEffect",),
     "effects.joint_slip": ("JointSlip",),
     "effects.stiffness_asymmetry": ("StiffnessAsymmetry",),
     "effects.stiffness_variation": ("StiffnessVariation",),

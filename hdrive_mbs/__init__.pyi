@@ -185,6 +185,8 @@ from hdrive_mbs.effects.presliding_friction import PreslidingFriction as Preslid
 from hdrive_mbs.effects.probe_cross_talk import ProbeCrossTalk as ProbeCrossTalk
 from hdrive_mbs.effects.probe_gain import ProbeGain as ProbeGain
 from hdrive_mbs.effects.probe_runout import ProbeRunout as ProbeRunout
+from hdrive_mbs.effects.pull_effect import PullEffect as PullEffect
+from hdrive_mbs.effects.pulsating_pull import PulsatingPull as PulsatingPull
 from hdrive_mbs.effects.quadratic_drag import QuadraticDrag as QuadraticDrag
 from hdrive_mbs.effects.relaxing_damping import RelaxingDamping as RelaxingDamping
 from hdrive_mbs.effects.ripple_spectrum import RippleSpectrum as RippleSpectrum

@@ -8,16 +8,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from hdrive_mbs.effects.lateral_effect import LateralEffect, stretches_of
+from hdrive_mbs.effects.pull_effect import PullEffect
 from hdrive_mbs.expression import Value
-from hdrive_mbs.network.draft import Draft
-from hdrive_mbs.network.excitation import Excitation
-from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.quantities import parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class MagneticPull(LateralEffect):
+class MagneticPull(PullEffect):
     """Unbalanced magnetic pull: a negative spring about the centre of the stator, and in two-pole machines a pull that turns.
 
     F = k z + b exp(i (f t + p)) z*,  F = F_x + i F_y,  z = x + i y - c_x - i c_y,  z* its conjugate
@@ -29,18 +26,15 @@ class MagneticPull(LateralEffect):
     ``<effect>.throb_x`` and ``_y`` that with b.
 
     Source: Maxwell's stress in the air gap, integrated as above; compare Smith, Dorrell, IEE Proc. Electric Power Applications 143 (1996)
-    193.  Leaves out saturation, the growth beyond a tenth of the gap, and what currents in the rotor and the slip do.
+    193.  Leaves out saturation, the growth beyond a tenth of the gap, what currents in the rotor and the slip do, and a field that turns
+    backwards (see PulsatingPull).
     """
 
-    stiffness: float = parameter("N/m", "k", low=0.0, high=1e9, typical=(1e2, 1e6))
-    centre_x: float = parameter("m", "c_x, centre of the stator", default=0.0, low=-1e-2, high=1e-2, typical=(-1e-4, 1e-4))
-    centre_y: float = parameter("m", "c_y", default=0.0, low=-1e-2, high=1e-2, typical=(-1e-4, 1e-4))
     throb: float = parameter("N/m", "b", default=0.0, low=0.0, high=1e9, typical=(1e2, 1e6))
     frequency: float = parameter("rad/s", "f, twice that of the mains", default=200.0 * np.pi, above=0.0, high=1e5)
     phase: float = parameter("rad", "p, phase at t = 0", default=0.0, typical=(-np.pi, np.pi))
 
-    acts_on: ClassVar[str] = "rotor"
-    family: ClassVar[str] = "magnetic_pull"
+    leads: ClassVar[bool] = True
     starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"frequency": (200.0 * np.pi, 240.0 * np.pi)}
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("throb", "phase"),)
     signature: ClassVar[str] = (
@@ -48,8 +42,9 @@ class MagneticPull(LateralEffect):
         " side bands as far away as the spin frequency"
     )
 
-    def force(self, time: Value, angle: Value, speed: Value, x: Value, y: Value, x_rate: Value, y_rate: Value) -> tuple[Value, Value]:
-        return self.stiffness * (x - self.centre_x), self.stiffness * (y - self.centre_y)
+    @property
+    def throbs(self) -> bool:
+        return self.throb != 0.0
 
     def throbbing(self, time: Value, x: Value, y: Value) -> tuple[Value, Value]:
         """The part with b [N] in x and y."""
@@ -57,21 +52,3 @@ class MagneticPull(LateralEffect):
         across, up = x - self.centre_x, y - self.centre_y
         cosine, sine = np.cos(turn), np.sin(turn)
         return self.throb * (cosine * across + sine * up), self.throb * (sine * across - cosine * up)
-
-    def apply(self, draft: Draft, place: str, name: str) -> None:
-        super().apply(draft, place, name)
-        if self.throb == 0.0:
-            return
-
-        def forces(moment: Moment, s: Mapping[str, Value], v: Mapping[str, Value]) -> Mapping[str, Value]:
-            return {key: -value for key, value in zip("xy", self.throbbing(moment.time, s["x"], s["y"]), strict=True)}
-
-        whole = stretches_of(self, draft, place)
-        element = Excitation(f"{name}.throb", {key: whole[key] for key in "xy"}, forces)
-        draft.add_element(element)
-        for key in "xy":
-
-            def read(moment: Moment, key: str = key) -> Value:
-                return -element.values(moment)[key] + 0.0 * moment.time
-
-            draft.add_channel(f"{name}.throb_{key}", "N", f"throbbing part of the force of {name} in {key}", read)

@@ -57,6 +57,9 @@ EXAMPLES = {
         Example(hm.ExternalShock(amplitude=500.0, start=0.013, length=5e-3, direction=1.0), "left", ("amplitude",)),
         Example(hm.GroundVibration(amplitude=50.0, frequency=300.0, phase=0.4, direction=1.0), "left", ("amplitude",)),
         Example(hm.MagneticPull(stiffness=2e4, centre_x=1e-4, throb=1e4, frequency=300.0, phase=0.3), "disc", ("stiffness", "throb")),
+        Example(
+            hm.PulsatingPull(stiffness=2e4, centre_x=1e-4, pulsation=1e4, frequency=300.0, phase=0.3), "disc", ("stiffness", "pulsation")
+        ),
         Example(hm.ProbeRunout(once=1e-4, once_phase=0.3, twice=5e-5, thrice=1e-5), "disc", ("once", "twice", "thrice")),
         Example(hm.ProbeGain(error=0.1, curvature=100.0), "probe", ("error", "curvature")),
         Example(hm.ProbeCrossTalk(share=0.1), "probe", ("share",)),

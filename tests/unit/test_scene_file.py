@@ -188,6 +188,7 @@ ROTOR_EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.ExternalShock(amplitude=100.0, start=0.1), "bearing"),
     (hm.GroundVibration(amplitude=10.0, frequency=200.0), "bearing"),
     (hm.MagneticPull(stiffness=1e4, centre_y=1e-5, throb=3e3), "rotor"),
+    (hm.PulsatingPull(stiffness=1e4, centre_y=1e-5, pulsation=3e3), "rotor"),
     (hm.ProbeRunout(once=1e-6, once_phase=0.3, twice=1e-7), "rotor"),
     (hm.ProbeGain(error=0.1, curvature=10.0), "probe"),
     (hm.ProbeCrossTalk(share=0.05), "probe"),
