@@ -17,8 +17,8 @@ from hdrive_mbs.diagnosis.team import Team
 def with_other_laws(team: Team, simulator: Simulator, pairs: Sequence[Found], everything: Sequence[Suspect]) -> list[Found]:
     """The best pair with each of its causes told by the other laws of it.
 
-    They begin with the values found, with those of ``Effect.elsewhere``, and with their own: the first ones and those farthest from what
-    was found, which may be a sharp friction where a smooth one acts.
+    They begin with the values found, with those of ``Effect.elsewhere`` and ``Effect.telling``, and with their own: the first ones and
+    those farthest from what was found, which may be a sharp friction where a smooth one acts.
 
     The law of the first cause was chosen while the second was missing, and a search for the second looks at one law of each.  In our own
     fourteenth drive set (c16, labels open) friction with presliding stood for one without it, and the drag beside it for what that left; in
@@ -37,4 +37,5 @@ def told_otherwise(full: Hypothesis, k: int, everything: Sequence[Suspect]) -> I
         if item.law != PARAMETER and item.label == mine.label and item.law != type(mine.effect).__name__:
             own = [start.added[-1].effect for start in item.all]
             held = [with_values(with_choices(own[0], effect), values_of(effect)) for effect in found]
-            yield from (Added(effect, mine.at, mine.name) for effect in dict.fromkeys((*held, own[0], farthest(held[0], own))))
+            told = own[0].telling(mine.effect)
+            yield from (Added(effect, mine.at, mine.name) for effect in dict.fromkeys((*held, *told, own[0], farthest(held[0], own))))

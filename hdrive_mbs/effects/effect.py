@@ -97,6 +97,14 @@ class Effect(Described, ABC):
         """
         return ()
 
+    def telling(self, other: Effect) -> tuple[Effect, ...]:
+        """The effect with what another law of its family was found with, where fields of the same name do not say it: a search that
+        tells a cause by other laws begins there too.
+
+        None by default.
+        """
+        return ()
+
     def twins(self, sense: int) -> tuple[Effect, ...]:
         """Effects of other classes that act exactly as it does with its values, so that no record can tell them apart: a search that
         ends with one of them names the others too.

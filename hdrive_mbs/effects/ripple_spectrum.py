@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
@@ -10,6 +11,7 @@ import numpy as np
 
 from hdrive_mbs.effects.effect import Effect, add_body_torque, moving_body
 from hdrive_mbs.effects.harmonics import harmonics
+from hdrive_mbs.effects.torque_ripple import TorqueRipple
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
 from hdrive_mbs.network.moment import Moment
@@ -62,6 +64,19 @@ class RippleSpectrum(Effect):
     def parts(self) -> tuple[tuple[float, float], ...]:
         """Amplitude [N m] and phase [rad] of each harmonic."""
         return tuple((getattr(self, amplitude), getattr(self, phase)) for amplitude, phase in self.vectors)
+
+    def telling(self, other: Effect) -> tuple[RippleSpectrum, ...]:
+        """Of a ripple of one order and its double the spectra that have both: cogging of order 36 may be the third of order 12."""
+        if not isinstance(other, TorqueRipple):
+            return ()
+        found = []
+        for order in self.starts["order"]:
+            k = round(other.order / order)
+            parts = {k: (other.amplitude, other.phase), 2 * k: (other.second_amplitude, other.second_phase)}
+            if 1 <= k <= len(self.vectors) and math.isclose(k * order, other.order):
+                named = [(self.vectors[j - 1], part) for j, part in parts.items() if j <= len(self.vectors)]
+                found.append(self.replacing(order=order, **{name: value for pair in named for name, value in zip(*pair, strict=True)}))
+        return tuple(found)
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         body = moving_body(self, draft, place)

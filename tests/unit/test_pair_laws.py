@@ -56,6 +56,37 @@ def test_another_law_begins_with_the_order_that_was_found_and_with_that_of_a_har
     assert not list(told_otherwise(full, 1, everything))  # no other law of a drag was given
 
 
+def test_a_ripple_of_one_order_is_told_as_a_harmonic_of_lower_ones() -> None:
+    ripple = hm.TorqueRipple(amplitude=0.02, order=36.0, phase=0.4, second_amplitude=0.01, second_phase=-1.1)
+    told = {item.order: item for item in hm.RippleSpectrum(order=1.0).telling(ripple)}
+    assert sorted(told) == [6.0, 12.0]  # 36 = 6 * 6 = 3 * 12; 36 = 9 * 4 is beyond the sixth harmonic
+    assert (told[12.0].third_amplitude, told[12.0].third_phase) == (0.02, 0.4)
+    assert (told[12.0].sixth_amplitude, told[12.0].sixth_phase) == (0.01, -1.1)
+    assert (told[6.0].sixth_amplitude, told[6.0].first_amplitude, told[6.0].fifth_amplitude) == (0.02, 0.0, 0.0)
+    assert hm.RippleSpectrum(order=1.0).telling(hm.TorqueRipple(amplitude=0.02, order=13.0)) == ()
+    assert hm.RippleSpectrum(order=1.0).telling(hm.Cogging(amplitude=0.02, order=12.0)) == ()
+
+
+def test_cogging_found_beside_a_drag_gets_the_ripple_whose_third_harmonic_it_is() -> None:
+    """In our own 28th drive set, c04, labels open, cogging of order 36 beside ripple of order 12 and friction left 1.27, and 1.01 so."""
+    spectrum = hm.RippleSpectrum(order=2.0, first_amplitude=0.06, first_phase=1.0, third_amplitude=0.2, third_phase=0.3)
+    planted = ((hm.QuadraticDrag(coefficient=0.3), "load"), (spectrum, "motor"))
+    both = Simulator(BENCH.trials(records(*planted)[0]), 2.5e-4, 4)
+    factors = factors_of(BENCH)
+    tried = candidates(BENCH.scene, [hm.TorqueRipple, hm.RippleSpectrum, hm.QuadraticDrag])
+    everything = suspects(Hypothesis(factors), {}, tried)
+    cogging = hm.TorqueRipple(amplitude=0.2, order=6.0, phase=0.3)
+    pair = fitted_pair(both, factors, Added(hm.QuadraticDrag(coefficient=0.3), "load", "drag"), Added(cogging, "motor", "ripple"))
+    with Team(1) as team:
+        best, *_ = contenders(team, both, [pair, *with_other_laws(team, both, [pair], everything)], pair)
+    assert pair.fitted.typical > 1.1 > best.fitted.typical
+    law = best.fitted.hypothesis.rescaled(best.fitted.z)[0].added[1].effect
+    assert isinstance(law, hm.RippleSpectrum)
+    assert law.order == 2.0
+    assert law.first_amplitude == pytest.approx(0.06, rel=0.1)
+    assert law.third_amplitude == pytest.approx(0.2, rel=0.05)
+
+
 def test_a_choice_that_another_law_may_not_have_leaves_it_as_it_was() -> None:
     beating = hm.BeatingKinematicError(amplitude=1e-6, order=3.0)
     plain = hm.KinematicError(amplitude=1e-5, order=6.0, follows="flexspline")
