@@ -143,6 +143,7 @@ def second_cause(
     others = alone(team, coarse, found[0], everything, first)
     gained = first.fitted.cost - found[0].fitted.cost
     again = left(found[0].fitted) > nearly_all(null.chi_fit) and gained > TAKEN * max(first.fitted.cost - 0.5 * samples, 0.0)
+    again = again and not _is_one(found[0])  # a law beside another law of the same cause: its own search found both
     if again and not team.deadline.passed("the first cause again beside the second"):
         # the first cause was chosen while the second was missing
         for item in (item for item in others if item.suspect.label == found[0].suspect.label):
@@ -169,6 +170,12 @@ def _elsewhere(
         return contenders(team, coarse, found, first)
     others = (*moved(team, coarse, found, tried), *both_moved(team, coarse, found, tried, everything))
     return contenders(team, coarse, [*found, *others], first)
+
+
+def _is_one(pair: Found) -> bool:
+    """Whether its causes are one phenomenon at one place."""
+    full = pair.fitted.hypothesis
+    return len(full.added) > 1 and len(full.labels) == 1 and not full.loose
 
 
 def _laws(pair: Found) -> frozenset[tuple[Label, str]]:
