@@ -189,6 +189,7 @@ _WHERE: dict[str, tuple[str, ...]] = {
     "effects.support_presliding": ("SupportPresliding",),
     "effects.support_square_damping": ("SupportSquareDamping",),
     "effects.support_stiffness_drift": ("SupportStiffnessDrift",),
+    "effects.support_stiffness_step": ("SupportStiffnessStep",),
     "effects.hidden_mode_support": ("HiddenModeSupport",),
     "effects.crack_effect": ("CrackEffect",),
     "effects.breathing_crack": ("BreathingCrack",),

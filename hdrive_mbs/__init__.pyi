@@ -222,6 +222,7 @@ from hdrive_mbs.effects.support_presliding import SupportPresliding as SupportPr
 from hdrive_mbs.effects.support_square_damping import SupportSquareDamping as SupportSquareDamping
 from hdrive_mbs.effects.support_stiffness_change import SupportStiffnessChange as SupportStiffnessChange
 from hdrive_mbs.effects.support_stiffness_drift import SupportStiffnessDrift as SupportStiffnessDrift
+from hdrive_mbs.effects.support_stiffness_step import SupportStiffnessStep as SupportStiffnessStep
 from hdrive_mbs.effects.thermal_drift import ThermalDrift as ThermalDrift
 from hdrive_mbs.effects.torque_ripple import TorqueRipple as TorqueRipple
 from hdrive_mbs.effects.unequal_drag import UnequalDrag as UnequalDrag

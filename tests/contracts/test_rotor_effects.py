@@ -80,6 +80,7 @@ EXAMPLES = {
         Example(hm.SupportDampingChange(change=0.8), "left", ("change",)),
         Example(hm.SupportMassChange(change=0.4), "left", ("change",)),
         Example(hm.SupportStiffnessDrift(change=0.5, time_constant=0.02), "left", ("change",)),
+        Example(hm.SupportStiffnessStep(change=0.5, middle_time=0.01, length=0.01), "left", ("change",)),
         Example(hm.SupportFriction(coulomb=20.0, smoothing_speed=1e-3), "left", ("coulomb",)),
         Example(hm.SupportPresliding(coulomb=20.0, presliding=2e-5), "left", ("coulomb",)),
         Example(hm.SupportSquareDamping(coefficient=1e4), "left", ("coefficient",)),

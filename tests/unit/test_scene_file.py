@@ -209,6 +209,7 @@ ROTOR_EFFECTS: tuple[tuple[Effect, str], ...] = (
     (hm.SupportDampingChange(change=0.1, direction="y"), "bearing"),
     (hm.SupportMassChange(change=0.1), "bearing"),
     (hm.SupportStiffnessDrift(change=0.1, time_constant=2.0), "bearing"),
+    (hm.SupportStiffnessStep(change=0.1, middle_time=2.0, length=0.5), "bearing"),
     (hm.SupportFriction(coulomb=3.0), "bearing"),
     (hm.SupportPresliding(coulomb=3.0, presliding=1e-6), "bearing"),
     (hm.SupportSquareDamping(coefficient=1e4, by_axis=True), "bearing"),

@@ -151,6 +151,10 @@ def drifts(t: float, z: complex, v: complex, state: complex) -> tuple[complex, c
     return -0.6 * (1.0 - math.exp(-t / 0.02)) * STIFFNESS * z, 0.0
 
 
+def gives_way(t: float, z: complex, v: complex, state: complex) -> tuple[complex, complex]:
+    return 0.4 / (1.0 + math.exp(-2.0 * (t - 0.03) / 0.005)) * STIFFNESS * z, 0.0
+
+
 @pytest.mark.parametrize(
     ("effect", "law"),
     [
@@ -161,8 +165,9 @@ def drifts(t: float, z: complex, v: complex, state: complex) -> tuple[complex, c
         (hm.SupportPresliding(coulomb=40.0, presliding=2e-5, by_axis=True), sticks_by_axis),
         (hm.SupportSquareDamping(coefficient=3e4, by_axis=True), square_by_axis),
         (hm.SupportStiffnessDrift(change=0.6, time_constant=0.02), drifts),
+        (hm.SupportStiffnessStep(change=-0.4, middle_time=0.03, length=0.005), gives_way),
     ],
-    ids=["rubs", "sticks", "square", "rubs by axis", "sticks by axis", "square by axis", "drifts"],
+    ids=["rubs", "sticks", "square", "rubs by axis", "sticks by axis", "square by axis", "drifts", "gives way"],
 )
 def test_a_disc_thrown_on_its_housing_whirls_as_scipy_says(effect: Effect, law: Law) -> None:
     disc, damping = 4.0, 200.0
@@ -253,7 +258,11 @@ def test_a_support_is_needed() -> None:
         },
         connections=[("drive", "disc", "bearing")],
     )
-    for effect in (hm.SupportFriction(coulomb=1.0), hm.SupportStiffnessDrift(change=0.1, time_constant=1.0)):
+    for effect in (
+        hm.SupportFriction(coulomb=1.0),
+        hm.SupportStiffnessDrift(change=0.1, time_constant=1.0),
+        hm.SupportStiffnessStep(change=0.1, middle_time=1.0, length=0.1),
+    ):
         with pytest.raises(hm.PlaceError, match="a bearing with a housing, and 'bearing' is none"):
             free.with_effect(effect, at="bearing").network()
 
