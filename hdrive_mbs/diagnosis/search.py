@@ -19,11 +19,12 @@ from hdrive_mbs.diagnosis.hops import settled
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.other_starts import from_other_starts, going_on
 from hdrive_mbs.diagnosis.periods import Periods
+from hdrive_mbs.diagnosis.reached import Reached, begun_near, reaches
 from hdrive_mbs.diagnosis.scans import fits_from, scan, worth_a_scan
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.stages import Report
-from hdrive_mbs.diagnosis.suspects import Label, Suspect, at_first, simplest, suspects
+from hdrive_mbs.diagnosis.suspects import PARAMETER, Label, Suspect, at_first, simplest, suspects
 from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE, NEAR, Found, Task, cheapest, further, rivalling, run_task, scored, those_that_ran
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unknowns import Factor
@@ -293,9 +294,10 @@ class _Work:
         return [*brief[len(best) :], *self.fitted(best, "fitting the best")]
 
     def _begun(self, everything: Sequence[Suspect], model: Fitted) -> list[Suspect]:
-        """Laws with a period begin at those that stand out in what the model leaves."""
-        periods = self.begin(self.simulator, model)
-        return [_begun(item, periods) if item.is_periodic else item for item in everything]
+        """Laws with a period begin at those that stand out in what the model leaves, those that show beyond a distance near the largest one
+        too."""
+        periods, reached = self.begin(self.simulator, model), Reached(self.simulator, model)
+        return [_near(_begun(item, periods) if item.is_periodic else item, reached) for item in everything]
 
     def fitted(self, asked: Sequence[tuple[Suspect, Task]], words: str) -> list[Found]:
         """Suspects with their tasks done; those that cannot be run from where they begin are left out."""
@@ -331,6 +333,12 @@ def cheapest_looks(looks: Sequence[tuple[Suspect, Look]]) -> list[tuple[Suspect,
 def _begun(item: Suspect, periods: StandsOut) -> Suspect:
     widths = widths_of(item.first[0], periods)
     return replace(item, first=begun_at(item.first, periods), all=begun_at(item.all, periods), widths=widths)
+
+
+def _near(item: Suspect, reached: Reached) -> Suspect:
+    if item.law == PARAMETER or not reaches(item.first[0]):
+        return item
+    return replace(item, first=begun_near(item.first, reached), all=begun_near(item.all, reached))
 
 
 def _look(screen: Screen, asked: tuple[tuple[Hypothesis, ...], Mapping[str, float]]) -> Look | None:

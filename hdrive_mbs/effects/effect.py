@@ -72,6 +72,9 @@ class Effect(Described, ABC):
     periodic: ClassVar[Mapping[str, str]] = {}
     """Fields that are periods per turn of the shaft ("turn") or angular frequencies ("time"): away from the right value the effect
     does not show, so a search begins at those that stand out in what is left."""
+    reaches: ClassVar[Mapping[str, tuple[float, ...]]] = {}
+    """Field -> shares of the largest distance from the axis that its place has in the fitted model, from which a search begins too: a
+    contact shows only beyond its gap."""
     leads: ClassVar[bool] = False
     """Whether it stands for its family in a first look, in place of the law with the fewest numbers to search."""
     finer: ClassVar[bool] = False

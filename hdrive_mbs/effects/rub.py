@@ -47,6 +47,7 @@ class Rub(LateralEffect):
     )
     starts: ClassVar[Mapping[str, tuple[Any, ...]]] = {"gap": (1e-5, 3e-5, 1e-4, 2e-4, 3e-4, 5e-4), "stiffness": (1e6,)}
     decisive: ClassVar[tuple[str, ...]] = ("gap",)
+    reaches: ClassVar[Mapping[str, tuple[float, ...]]] = {"gap": (0.98, 0.9, 0.7)}
     leads: ClassVar[bool] = True
 
     def normal(self, depth: Value, rate: Value) -> Value:
