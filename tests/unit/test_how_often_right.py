@@ -53,6 +53,28 @@ def test_the_last_four_sets_together_are_the_sums_of_theirs(bench: str) -> None:
     assert told == f"cause right in {with_interval('effect right')}, place right in {with_interval('place right')}, both of two in {pairs}"
 
 
+def test_the_sets_since_a_method_are_told_as_they_came_out() -> None:
+    text = (ROOT / "docs" / "diagnosis.md").read_text("utf-8")
+    [(sets, told)] = re.findall(r"^Both benches, .+ answered by 04cb5ea or later, .+ \((.+)\): (cause .+)\.$", text, re.MULTILINE)
+    named = {
+        bench: [int(number) for number in re.findall(r"\d+", words)]
+        for bench, words in zip(("drive", "rotor"), sets.split(", "), strict=True)
+    }
+    there = {bench: sorted(int(path.parent.name.partition("_")[2]) for path in OWN.glob(f"{bench}_[0-9]*/results.json")) for bench in named}
+    assert named == {bench: [number for number in there[bench] if number >= first] for bench, first in (("drive", 29), ("rotor", 31))}
+    names = [f"{bench}_{number}" for bench, numbers in named.items() for number in numbers]
+    methods = [json.loads((OWN / name / "results.json").read_text("utf-8"))["methods"]["diagnosis"] for name in names]
+
+    def counted(name: str, *, bounds: bool = False) -> str:
+        right, of = sum(found[name]["right"] for found in methods), sum(found[name]["of"] for found in methods)
+        low, high = interval(right, of)
+        return f"{right} of {of} ({low:.2f} to {high:.2f})" if bounds else f"{right} of {of}"
+
+    first = f"cause right in {counted('effect right', bounds=True)}, place right in {counted('place right', bounds=True)}"
+    more = f"both of two in {counted('both of two')}, nulls kept in {counted('nulls kept')}"
+    assert told == f'{first}, {more}, no known cause answered "unknown" in {counted("unknown caught")}'
+
+
 def test_the_nulls_of_their_own_are_told_as_they_came_out() -> None:
     text = (ROOT / "docs" / "diagnosis.md").read_text("utf-8")
     [told] = re.findall(r"^Nulls of their own, .+: (.+)\.$", text, re.MULTILINE)
