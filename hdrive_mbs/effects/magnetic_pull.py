@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -31,11 +30,8 @@ class MagneticPull(PullEffect):
     """
 
     throb: float = parameter("N/m", "b", default=0.0, low=0.0, high=1e9, typical=(1e2, 1e6))
-    frequency: float = parameter("rad/s", "f, twice that of the mains", default=200.0 * np.pi, above=0.0, high=1e5)
-    phase: float = parameter("rad", "p, phase at t = 0", default=0.0, typical=(-np.pi, np.pi))
 
     leads: ClassVar[bool] = True
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"frequency": (200.0 * np.pi, 240.0 * np.pi)}
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("throb", "phase"),)
     signature: ClassVar[str] = (
         "lower resonances of a machine under voltage than without; in two-pole machines vibration at twice the frequency of the mains, with"

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from hdrive_mbs.effects.lateral_effect import LateralEffect, stretches_of
 from hdrive_mbs.expression import Value
 from hdrive_mbs.network.draft import Draft
@@ -28,9 +30,12 @@ class PullEffect(LateralEffect):
     stiffness: float = parameter("N/m", "k", low=0.0, high=1e9, typical=(1e2, 1e6))
     centre_x: float = parameter("m", "c_x, centre of the stator", default=0.0, low=-1e-2, high=1e-2, typical=(-1e-4, 1e-4))
     centre_y: float = parameter("m", "c_y", default=0.0, low=-1e-2, high=1e-2, typical=(-1e-4, 1e-4))
+    frequency: float = parameter("rad/s", "f of T, twice that of the mains", default=200.0 * np.pi, above=0.0, high=1e5)
+    phase: float = parameter("rad", "p of T at t = 0", default=0.0, typical=(-np.pi, np.pi))
 
     acts_on: ClassVar[str] = "rotor"
     family: ClassVar[str] = "magnetic_pull"
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"frequency": (200.0 * np.pi, 240.0 * np.pi)}
 
     @property
     @abstractmethod

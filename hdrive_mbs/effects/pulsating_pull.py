@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -30,10 +29,7 @@ class PulsatingPull(PullEffect):
     """
 
     pulsation: float = parameter("N/m", "b", default=0.0, low=0.0, high=1e9, typical=(1e2, 1e6))
-    frequency: float = parameter("rad/s", "f, twice that of the mains", default=200.0 * np.pi, above=0.0, high=1e5)
-    phase: float = parameter("rad", "p, phase at t = 0", default=0.0, typical=(-np.pi, np.pi))
 
-    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"frequency": (200.0 * np.pi, 240.0 * np.pi)}
     vectors: ClassVar[tuple[tuple[str, str], ...]] = (("pulsation", "phase"),)
     signature: ClassVar[str] = (
         "lower resonances of a machine under voltage than without, vibration at twice the frequency of the mains along the way in which the"
