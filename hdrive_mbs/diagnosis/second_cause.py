@@ -143,7 +143,7 @@ def second_cause(
     others = alone(team, coarse, found[0], everything, first)
     gained = first.fitted.cost - found[0].fitted.cost
     again = left(found[0].fitted) > nearly_all(null.chi_fit) and gained > TAKEN * max(first.fitted.cost - 0.5 * samples, 0.0)
-    again = again and not _is_one(found[0])  # a law beside another law of the same cause: its own search found both
+    again = again and not _is_one(found[0])  # the first would be looked for beside itself
     if again and not team.deadline.passed("the first cause again beside the second"):
         # the first cause was chosen while the second was missing
         for item in (item for item in others if item.suspect.label == found[0].suspect.label):

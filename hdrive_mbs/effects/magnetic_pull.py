@@ -38,10 +38,6 @@ class MagneticPull(PullEffect):
         " side bands as far away as the spin frequency"
     )
 
-    @property
-    def throbs(self) -> bool:
-        return self.throb != 0.0
-
     def throbbing(self, time: Value, x: Value, y: Value) -> tuple[Value, Value]:
         """The part with b [N] in x and y."""
         turn = self.frequency * time + self.phase

@@ -24,7 +24,7 @@ class PullEffect(LateralEffect):
     F = k z + T(t, z),  F = F_x + i F_y,  z = x + i y - c_x - i c_y
 
     with displacements from the line without load.  Static deflection and whirl know k alone.  ``<effect>.force_x`` and ``_y`` show the
-    part with k, ``<effect>.throb_x`` and ``_y`` the part T.
+    part with k, ``<effect>.throb_x`` and ``_y`` the part T, if one of the amplitudes in ``vectors`` is not zero.
     """
 
     stiffness: float = parameter("N/m", "k", low=0.0, high=1e9, typical=(1e2, 1e6))
@@ -37,11 +37,6 @@ class PullEffect(LateralEffect):
     family: ClassVar[str] = "magnetic_pull"
     starts: ClassVar[Mapping[str, tuple[float, ...]]] = {"frequency": (200.0 * np.pi, 240.0 * np.pi)}
 
-    @property
-    @abstractmethod
-    def throbs(self) -> bool:
-        """Whether there is a part T."""
-
     @abstractmethod
     def throbbing(self, time: Value, x: Value, y: Value) -> tuple[Value, Value]:
         """The part T [N] in x and y at displacements [m] of the rotor."""
@@ -51,7 +46,7 @@ class PullEffect(LateralEffect):
 
     def apply(self, draft: Draft, place: str, name: str) -> None:
         super().apply(draft, place, name)
-        if not self.throbs:
+        if all(getattr(self, size) == 0.0 for size, _ in self.vectors):
             return
 
         def forces(moment: Moment, s: Mapping[str, Value], v: Mapping[str, Value]) -> Mapping[str, Value]:

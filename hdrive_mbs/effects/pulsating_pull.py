@@ -36,10 +36,7 @@ class PulsatingPull(PullEffect):
         " rotor stands off its stator's middle, with side bands as far away as the spin frequency"
     )
 
-    @property
-    def throbs(self) -> bool:
-        return self.pulsation != 0.0
-
     def throbbing(self, time: Value, x: Value, y: Value) -> tuple[Value, Value]:
+        """The part with b [N] in x and y."""
         size = self.pulsation * np.cos(self.frequency * time + self.phase)
         return size * (x - self.centre_x), size * (y - self.centre_y)

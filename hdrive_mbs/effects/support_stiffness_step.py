@@ -23,9 +23,9 @@ class SupportStiffnessStep(SupportEffect):
     in place of S(x), for the displacement x of the housing and the time t of the run: half of the change is there at t_0, and nine tenths
     of it come within 2.9 h.  A support that is otherwise from the beginning as well has a SupportStiffnessChange beside it.
 
-    Source: the curve is ours: a level, another one, and the least that smoothly leads from one to the other.  Leaves out what makes the
-    support give way, so that every record has it at the same time.  The force of gravity on the housing stays, so the housing sinks or
-    rises as the stiffness changes.
+    Source: the curve is ours, a smooth step between two levels.  Leaves out what makes the support give way, so that every run has it at
+    the same time.  Static deflection and whirl have what is there at t = 0.  The force of gravity on the housing stays, so the housing
+    sinks or rises as the stiffness changes.
     """
 
     change: float = parameter("1", "e, stiffness more in the end, as a share of it", low=-0.95, high=100.0, typical=(-0.5, 1.0))

@@ -76,3 +76,13 @@ def made(times: np.ndarray, angle: np.ndarray, speed: np.ndarray, z: np.ndarray,
         seconds=0.0,
         lowering={},
     )
+
+
+def damped_disc(damping: float) -> hm.Scene:
+    """A balanced disc on one support; nothing turns it, so it keeps the speed it starts with."""
+    return jeffcott(constant(0.0), support(damping=damping), eccentricity=0.0)
+
+
+def z_of(response: hm.Response, place: str) -> np.ndarray:
+    """x + i y of a place."""
+    return np.asarray(response[f"{place}.x"].values + 1j * response[f"{place}.y"].values)

@@ -12,18 +12,9 @@ from scipy.integrate import solve_ivp
 import hdrive_mbs as hm
 from hdrive_mbs.analysis.whirl.line_matrices import LineMatrices
 from hdrive_mbs.analysis.whirl.rotor_point import rotor_point
-from tests.unit.rotor_scenes import MASS, STIFFNESS, constant, jeffcott, support
+from tests.unit.rotor_scenes import MASS, STIFFNESS, damped_disc, z_of
 
 STEP = hm.RungeKutta4(step=1e-4)
-
-
-def z_of(response: hm.Response, place: str) -> np.ndarray:
-    return np.asarray(response[f"{place}.x"].values + 1j * response[f"{place}.y"].values)
-
-
-def damped_disc(damping: float) -> hm.Scene:
-    """A balanced disc on one support; nothing turns it, so it keeps the speed it starts with."""
-    return jeffcott(constant(0.0), support(damping=damping), eccentricity=0.0)
 
 
 def test_a_magnet_pulls_the_disc_over_and_lowers_its_frequency() -> None:

@@ -25,14 +25,10 @@ from hdrive_mbs.network.excitation import Excitation
 from hdrive_mbs.network.moment import Moment
 from hdrive_mbs.network.network import Network
 from models import rotor_bench, two_rotor_line
-from tests.unit.rotor_scenes import CRITICAL, ECCENTRICITY, MASS, POLAR, STIFFNESS, constant, holding, jeffcott, support
+from tests.unit.rotor_scenes import CRITICAL, ECCENTRICITY, MASS, POLAR, STIFFNESS, constant, damped_disc, holding, jeffcott, support, z_of
 
 TRANSVERSE = 0.006
 STEP = hm.RungeKutta4(step=1e-4)
-
-
-def z_of(response: hm.Response, place: str) -> np.ndarray:
-    return np.asarray(response[f"{place}.x"].values + 1j * response[f"{place}.y"].values)
 
 
 def amplitude(response: hm.Response, values: np.ndarray, order: float, place: str, turns: float) -> complex:
@@ -40,11 +36,6 @@ def amplitude(response: hm.Response, values: np.ndarray, order: float, place: st
     angle = response[f"{place}.angle"].values
     last = angle >= angle[-1] - 2.0 * np.pi * turns
     return complex(np.mean(values[last] * np.exp(-1j * order * angle[last])))
-
-
-def damped_disc(damping: float) -> hm.Scene:
-    """A balanced disc on one support; nothing turns it, so it keeps the speed it starts with."""
-    return jeffcott(constant(0.0), support(damping=damping), eccentricity=0.0)
 
 
 def mid_shaft(damping: float = 2e-3) -> hm.Scene:

@@ -20,8 +20,9 @@ RESOLVED = 1e-10
 
 TOGETHER = (1e-13, 1e-9)
 """Roots closer than these shares of the largest |lambda| and of their own count as one multiple root, or closer than 2 n times the rounding
-of the largest, for n states: each of two equal ones may be off by n times it, the bound of a backward stable solver with well-conditioned
-roots.  A shaft of 97 stations on bearings of 1e14 N/m had its first two 1360 times it apart, n = 776 (numpy 2.1.0)."""
+of the largest, for n states: each of two equal ones may be off by about n times it, as a rule of thumb for backward stable solvers.  The
+first two of a shaft of 97 stations on bearings of 1e14 N/m (tests/verification/test_published_rotors.py) were 1360 times it apart with
+scipy 1.14.0, n = 776, by a script that is not kept."""
 
 APART = 1e-8
 """Difference of d(lambda)/d(speed) from which a multiple root parts with the speed."""
@@ -118,7 +119,7 @@ def _part_multiple_roots(
 ) -> None:
     """Choose shapes in the space of each multiple root (in place)."""
     start = 0
-    near = max(TOGETHER[0], 4.0 * len(damping) * np.finfo(float).eps) * largest
+    near = max(TOGETHER[0], 4 * len(damping) * float(np.finfo(float).eps)) * largest
     for end in range(1, len(values) + 1):
         if end < len(values):
             gap = abs(values[end] - values[start])
