@@ -60,7 +60,7 @@ def study(*, quick: bool, repeats: int) -> dict[str, Any]:
     rows: list[dict[str, Any]] = []
     with tempfile.TemporaryDirectory() as folder:
         for bench, names in causes.items():
-            for problem, cause in _problems(bench, names, repeats, Path(folder) / bench):
+            for problem, cause in problems(bench, names, repeats, Path(folder) / bench):
                 simulator, hypothesis, start = problem.simulator, problem.look.hypothesis, problem.look.z
                 about_it = {"bench": bench, "case": problem.case, "cause": cause, "law": problem.law, "place": problem.place}
                 for way, method in WAYS.items():
@@ -88,7 +88,7 @@ def ends(simulator: Simulator, hypothesis: Hypothesis, z: FloatArray) -> dict[st
     return {"left": chi_square(run, simulator.fit), "misfit": 2.0 * cost / int(np.count_nonzero(simulator.fit))}
 
 
-def _problems(bench: str, names: tuple[str, ...], repeats: int, folder: Path) -> Iterator[tuple[Problem, str]]:
+def problems(bench: str, names: tuple[str, ...], repeats: int, folder: Path) -> Iterator[tuple[Problem, str]]:
     """Of each cause the law that a search looks at first, at the right place; causes whose place has none are left out."""
     labels = make_set(bench, repeats * len(names), SEED, folder, names=names)
     known, meant = bench_of(bench), names_of(bench)

@@ -11,6 +11,7 @@ machine      LLVM text -> functions, kept by structure
 lanes        programs of one structure in memory, and their runs
 line         networks ready to be run with fixed-step Runge-Kutta, one or many
 step_limit   the longest stable step, and idle_coordinates, which often set it without need
+slowed       vibrations that are too fast for a step, slowed down
 
 For searching and fitting; what is found is verified on the engine.
 """

@@ -15,6 +15,7 @@ from hdrive_mbs.compiled.lanes import Lanes, run_lanes
 from hdrive_mbs.compiled.machine import processor
 from hdrive_mbs.compiled.program import program
 from hdrive_mbs.compiled.readings import readings
+from hdrive_mbs.compiled.slowed import Slowed, slowed_accelerations
 from hdrive_mbs.compiled.structure import Structure
 from hdrive_mbs.compiled.threads import side_by_side
 from hdrive_mbs.errors import ParameterError, SimulationError
@@ -41,18 +42,19 @@ class CompiledLine:
     :func:`run_many` runs many such lines at once.
 
     channels : names of what a run returns (angles, speeds, torques, readings; accelerations are rates of speeds)
+    slowed : vibrations that are slowed, see ``slowed_vibrations``; none if not given
 
     Raises TraceError for a law that cannot be recorded, and ParameterError for a network whose equations cannot be compiled.
     """
 
-    def __init__(self, network: Network, channels: Sequence[str]) -> None:
+    def __init__(self, network: Network, channels: Sequence[str], slowed: Sequence[Slowed] = ()) -> None:
         self.network, self.channels = network, tuple(channels)
         self.names = tuple(body.name for body in network.bodies)
         states = [state.name for state in network.states]
         variables = ["t", *(f"angle:{name}" for name in self.names), *(f"speed:{name}" for name in self.names)]
         variables += [f"state:{name}" for name in states]
         moment = self._recording()
-        found = functools.cache(lambda: accelerations(network, moment))
+        found = functools.cache(lambda: slowed_accelerations(accelerations(network, moment), slowed))
         read = _recorded(lambda: readings(network, self.channels, moment, found))
         rates = _recorded(lambda: [moment.speed(n) for n in self.names] + [found()[name] for name in (*self.names, *states)])
         self.program = program(rates, read, variables)

@@ -77,7 +77,8 @@ def coupled_accelerations(network: Network, moment: Moment) -> dict[str, Value]:
 
     Raises ParameterError for rotors that are far from round and masses that join their spins to lateral motion.
     """
-    names, matrix, turning = _masses(network)
+    names, matrix = masses(network)
+    turning = _turning(network, names, matrix)
     mass = _selected(names, matrix, [name for name in names if name not in turning])
     rotors = _spinning_rotors(network, mass)
     for part in rotors:
@@ -101,8 +102,8 @@ def coupled_accelerations(network: Network, moment: Moment) -> dict[str, Value]:
     return {**{name: found[name] for name in names}, **rates}
 
 
-def _masses(network: Network) -> tuple[list[str], FloatArray, list[str]]:
-    """Names of all coordinates, their constant masses, and the spins of rotors with all that shares inertia with them."""
+def masses(network: Network) -> tuple[list[str], FloatArray]:
+    """Names of all coordinates, and their constant masses."""
     names = [body.name for body in network.bodies]
     index = {name: k for k, name in enumerate(names)}
     matrix = network.constant_mass.copy()
@@ -110,6 +111,11 @@ def _masses(network: Network) -> tuple[list[str], FloatArray, list[str]]:
         kept = np.array([k for k, name in enumerate(rotor.coordinates) if name in index], int)
         at = np.array([index[rotor.coordinates[k]] for k in kept], int)
         matrix = added_at(matrix, at, mass_at_rest(rotor.body.balanced())[kept[:, None], kept])
+    return names, matrix
+
+
+def _turning(network: Network, names: Sequence[str], matrix: FloatArray) -> list[str]:
+    """The spins of rotors with all that shares inertia with them."""
     spins = {rotor.coordinates[5]: rotor.name for rotor in network.rotors}
     turning: list[str] = []
     for group in groups(pattern(matrix)):
@@ -122,7 +128,7 @@ def _masses(network: Network) -> tuple[list[str], FloatArray, list[str]]:
                 raise ParameterError(
                     f"Masses join the spin of {mine[0]!r} to {', '.join(lateral)}, which a compiled run cannot; simulate it on the engine."
                 )
-    return names, matrix, turning
+    return turning
 
 
 def _selected(names: Sequence[str], matrix: FloatArray, kept: Sequence[str]) -> ConstantMass:

@@ -40,7 +40,7 @@ def longest_step(
     """
     if not 0.0 < margin <= 1.0:
         raise ParameterError(f"margin = {margin:g}: must be greater than 0 and at most 1.")
-    values = np.asarray(np.linalg.eigvals(_jacobian(network, time, angles or {}, speeds or {}, states or {})), complex)
+    values = np.asarray(np.linalg.eigvals(jacobian(network, time, angles, speeds, states)), complex)
     if not np.isfinite(values).all():
         raise ParameterError("The rates of this network are not finite at the given point; give another one.")
     return margin * stable_step(values)
@@ -70,10 +70,15 @@ def reach(direction: float) -> float:
     return low
 
 
-def _jacobian(
-    network: Network, time: float, angles: Mapping[str, float], speeds: Mapping[str, float], states: Mapping[str, float]
+def jacobian(
+    network: Network,
+    time: float = 0.0,
+    angles: Mapping[str, float] | None = None,
+    speeds: Mapping[str, float] | None = None,
+    states: Mapping[str, float] | None = None,
 ) -> FloatArray:
-    """d(rates)/d(angles, speeds, states) by central differences, all at once."""
+    """d(rates)/d(angles, speeds, states) by central differences, all at once; rates in the order of the angles, speeds and states."""
+    angles, speeds, states = angles or {}, speeds or {}, states or {}
     names = [body.name for body in network.bodies]
     n = len(names)
     point = [angles.get(name, 0.0) for name in names] + [speeds.get(name, 0.0) for name in names]

@@ -45,8 +45,8 @@ def along(simulator: Simulator, number: int, fitted: Fitted, channels: Sequence[
         if network.is_lateral:
             network = without_idle(network, {**start, **{f"{name}_rate": value for name, value in trial.speeds.items()}})
         measured = (item.channel for item in trial.measured.values())  # whose growth tells that the step is too long
-        line = CompiledLine(network, tuple(dict.fromkeys((*wanted, *measured))))
+        line = CompiledLine(network, tuple(dict.fromkeys((*wanted, *measured))), simulator.slowed)
     except HdriveError:
         return {}
-    [run] = run_trial(trial, [line], [start], simulator.step, parts=simulator.parts)
+    [run] = run_trial(trial, [line], [start], simulator.steps[number], parts=simulator.parts)
     return {} if isinstance(run, SimulationError) else {name: run.values[name][:: fold_of(trial)].copy() for name in wanted}

@@ -31,6 +31,7 @@ from hdrive_mbs.diagnosis.gap import gaps
 from hdrive_mbs.diagnosis.gather import Evidence, gather
 from hdrive_mbs.diagnosis.input_checks import check_records, check_trials, not_compared, not_driven
 from hdrive_mbs.diagnosis.journal import Journal
+from hdrive_mbs.diagnosis.pace import Pace, pace_of
 from hdrive_mbs.diagnosis.pictures import pictures_of
 from hdrive_mbs.diagnosis.record_words import record_words
 from hdrive_mbs.diagnosis.refusals import refused_words
@@ -84,7 +85,8 @@ def diagnose(
     candidates : effect classes to try; all of the library and whatever else has been imported if not given
     workers : processes; 1 if not given.  With more, a script needs the line ``if __name__ == "__main__":`` before the call
     folder : where fits are kept, so that an interrupted diagnosis goes on from there
-    step : of the integration [s], chosen if not given (``suitable_step``); what grows with it is run again with half of it
+    step : of the integration [s], chosen if not given (``suitable_step``, and longer ones for the search on rotor lines, ``pace_of``);
+        what grows with it is run again with half of it
     held_out : names of records that neither a fit nor the localisation may see, on which the gap is then measured, and which the
         verdict asks whether a claim holds there too; if not given, a quarter of every record, in stretches
     search_seconds : after which the search looks for no more where what it has found leaves something [s]; no end if not given.  What
@@ -107,8 +109,12 @@ def diagnose(
     searched, trials = split_up(trials_of, known.searched, aside)
     factors = factors_of(known)
     tried = all_candidates(trials[0].scene, candidates)
-    step = suitable_step(trials, factors) if step is None else step
-    coarse, fine = Simulator(searched, step, EVERY), Simulator(trials, step)
+    if step is None:
+        step = suitable_step(trials, factors)
+        pace = pace_of(searched, factors, step)
+    else:
+        pace = Pace((step,) * len(searched))
+    coarse, fine = Simulator(searched, pace.steps, EVERY, slowed=pace.slowed), Simulator(trials, step)
     check_trials(coarse, factors)
     if aside:
         check_trials(Simulator([trial for trial in trials if trial.held_out.all()], step, EVERY), factors, fitted=False)
@@ -123,7 +129,7 @@ def diagnose(
     check_candidates(tried, coarse, factors)
     journal = None
     if folder is not None:
-        inputs = {"records": chosen, "bench": known, "candidates": tried, "trials": (trials, factors, known.groups, step, EVERY)}
+        inputs = {"records": chosen, "bench": known, "candidates": tried, "trials": (trials, factors, known.groups, step, pace, EVERY)}
         journal = Journal(folder, inputs)
     others_run = (workers or 1) > 1
     if others_run:
@@ -140,7 +146,7 @@ def diagnose(
     with allowed(lambda: workers or 1):  # its processes have ended
         found = answer(known, chosen, evidence, claim, best, checked, planned, started=started, pictures=pictures)
     notes = (
-        *left_out(tried, evidence.single, step),
+        *left_out(tried, evidence.single, coarse.step),
         *ringing_words(trials),
         *team.lost,
         *(() if journal is None else journal.said),
@@ -150,6 +156,8 @@ def diagnose(
     files = {record.name: {"source": record.source, "sha256": record.sha256} for record in chosen if record.sha256}
     settings = {
         "step": step,
+        "steps_of_search": dict(zip([trial.name for trial in searched], pace.steps, strict=True)),
+        "slowed_in_search": len(pace.slowed),
         "every": EVERY,
         "candidates": [f"{item.kind.__name__}@{item.at}" for item in tried],
         "searched": [name for name, own in trials_of.items() if any(trial in searched for trial in own)],

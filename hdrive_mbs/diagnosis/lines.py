@@ -13,6 +13,7 @@ from hdrive_mbs.compiled.equilibrium import equilibria
 from hdrive_mbs.compiled.idle_coordinates import without_idle
 from hdrive_mbs.compiled.line import CompiledLine
 from hdrive_mbs.compiled.program import Program
+from hdrive_mbs.compiled.slowed import Slowed
 from hdrive_mbs.compiled.structure import Structure
 from hdrive_mbs.compiled.time_inputs import TimeInput
 from hdrive_mbs.diagnosis.following import following
@@ -49,8 +50,8 @@ class Lines:
     structure and numbers have to be equal, and no searched parameter may sit in a part in which the scenes differ.
     """
 
-    def __init__(self, trials: Sequence[Trial]) -> None:
-        self._trials = tuple(trials)
+    def __init__(self, trials: Sequence[Trial], slowed: Sequence[Slowed] = ()) -> None:
+        self._trials, self._slowed = tuple(trials), tuple(slowed)
         self._families: list[list[int]] = []
         for k, trial in enumerate(self._trials):
             for family in self._families:
@@ -184,12 +185,18 @@ class Lines:
             return None
         trial = self._trials[k]
         try:
-            return _compiled(network, trial)
+            return self._made(network, trial)
         except ParameterError:
             if k not in self._followed:
-                _compiled(trial.scene.network(), trial)
+                self._made(trial.scene.network(), trial)
                 self._followed.add(k)
             return None
+
+    def _made(self, network: Network, trial: Trial) -> CompiledLine:
+        driven = following(network, trial.motions)
+        if driven.is_lateral:
+            driven = without_idle(driven, {**trial.angles, **{f"{name}_rate": value for name, value in trial.speeds.items()}})
+        return CompiledLine(driven, _channels(trial), self._slowed)
 
 
 @contextmanager
@@ -212,13 +219,6 @@ def _resting(lines: Sequence[CompiledLine | None], angles: Mapping[str, float]) 
 
 def _channels(trial: Trial) -> list[str]:
     return [trial.measured[column].channel for column in trial.columns]
-
-
-def _compiled(network: Network, trial: Trial) -> CompiledLine:
-    driven = following(network, trial.motions)
-    if driven.is_lateral:
-        driven = without_idle(driven, {**trial.angles, **{f"{name}_rate": value for name, value in trial.speeds.items()}})
-    return CompiledLine(driven, _channels(trial))
 
 
 def _network(hypothesis: Hypothesis, scene: Scene, point: FloatArray) -> Network | None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from hdrive_mbs.compiled.slowed import Slowed
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines, Start
 from hdrive_mbs.diagnosis.noise import Free, Whitener
@@ -45,9 +46,10 @@ class Segment:
 class Simulator:
     """Trials with their whitening, ready for hypotheses.
 
-    trials : at least one;  step : longest step of the integration [s]
+    trials : at least one;  step : longest step of the integration [s], or one for each of them
     every : compare only each such sample: a cheaper look, less sharp
     parts : in which each step is divided;  again : whether what grows at it is run again with half of it, see ``run_trials``
+    slowed : vibrations that are slowed in all lines (pace.py)
 
     unseen : by name of a nominal parameter the trials in which it is not believed to show (``Simulator.knowing``)
 
@@ -55,10 +57,21 @@ class Simulator:
     the other (``segments``); ``fit`` and ``held_out`` say which of them a fit may see.
     """
 
-    def __init__(self, trials: Sequence[Trial], step: float, every: int = 1, *, parts: int = 1, again: bool = True) -> None:
+    def __init__(
+        self,
+        trials: Sequence[Trial],
+        step: float | Sequence[float],
+        every: int = 1,
+        *,
+        parts: int = 1,
+        again: bool = True,
+        slowed: Sequence[Slowed] = (),
+    ) -> None:
         if not trials:
             raise ParameterError("A diagnosis needs at least one record.")
-        self.trials, self.step, self.every, self.parts, self.again = tuple(trials), step, every, parts, again
+        self.trials, self.every, self.parts, self.again = tuple(trials), every, parts, again
+        self.steps = tuple(step) if isinstance(step, Sequence) else (step,) * len(self.trials)
+        self.slowed = tuple(slowed)
         segments: list[Segment] = []
         fit: list[Mask] = []
         held: list[Mask] = []
@@ -89,7 +102,7 @@ class Simulator:
 
     def forget(self) -> None:
         """Let go of the runs and lines that are kept for what is asked again."""
-        self._lines = Lines(self.trials)
+        self._lines = Lines(self.trials, self.slowed)
         self._kept: list[OrderedDict[object, Values | None]] = [OrderedDict() for _ in self.trials]
         self._started: tuple[Hypothesis, FloatArray, list[dict[str, float]]] | None = None
 
@@ -123,6 +136,11 @@ class Simulator:
         }
         other.forget()
         return other
+
+    @property
+    def step(self) -> float:
+        """The shortest of its steps [s]."""
+        return min(self.steps)
 
     @property
     def size(self) -> int:
@@ -214,10 +232,10 @@ class Simulator:
 
     def _run(self, starts: Sequence[tuple[int, Start]]) -> list[Values | None]:
         """Values of the columns of trials from starts, each with the number of its trial."""
-        asked = [Through(self.trials[number], start.line, start.angles) for number, start in starts]
+        asked = [Through(self.trials[number], start.line, start.angles, self.steps[number]) for number, start in starts]
         self.runs += len(asked)
         found: dict[int, Values | None] = {}
-        for k, run in run_trials(asked, self.step, parts=self.parts, again=self.again):
+        for k, run in run_trials(asked, parts=self.parts, again=self.again):
             found[k] = None if isinstance(run, SimulationError) else measured_in(asked[k].trial, run)
         return [found[k] for k in range(len(asked))]
 

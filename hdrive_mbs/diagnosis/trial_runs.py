@@ -1,6 +1,6 @@
 """Lines run through trials; with half the step where they grow at the one that was chosen for the nominal model.
 
-Lines of different trials go side by side where these are sampled as often: most questions are of one line or two, and a run of as
+Lines of different trials go side by side where these are sampled and stepped alike: most questions are of one line or two, and a run of as
 many as the processor has lanes takes little longer than one of one (benchmarks/lanes).
 """
 
@@ -28,26 +28,25 @@ AT_ONCE = 16
 
 @dataclass(frozen=True, eq=False)
 class Through:
-    """A line that is to go through a trial from its angles [rad, m]."""
+    """A line that is to go through a trial from its angles [rad, m], in steps of the integration of at most this length [s]."""
 
     trial: Trial
     line: CompiledLine
     angles: Mapping[str, float]
+    step: float
 
 
-def run_trials(
-    asked: Sequence[Through], step: float, *, parts: int = 1, again: bool = True
-) -> Iterator[tuple[int, CompiledRun | SimulationError]]:
+def run_trials(asked: Sequence[Through], *, parts: int = 1, again: bool = True) -> Iterator[tuple[int, CompiledRun | SimulationError]]:
     """(number of what was asked, its run), in an order of its own.
 
-    step : longest one of the integration [s];  parts : in which it is divided
+    parts : in which each step is divided
     again : whether what grows is run again with half of it: what stiffens a line may need that
     """
-    sampled: dict[float, list[int]] = {}
+    alike: dict[tuple[float, int], list[int]] = {}
     for number, item in enumerate(asked):
-        sampled.setdefault(item.trial.every / fold_of(item.trial), []).append(number)
-    for every, numbers in sampled.items():
-        inner = math.ceil(every / step * (1.0 - 1e-9))
+        every = item.trial.every / fold_of(item.trial)
+        alike.setdefault((every, math.ceil(every / item.step * (1.0 - 1e-9))), []).append(number)
+    for (every, inner), numbers in alike.items():
         numbers.sort(key=lambda k: -_samples(asked[k].trial))  # those that go to the same end together
         for first in range(0, len(numbers), AT_ONCE):
             some = numbers[first : first + AT_ONCE]
@@ -70,9 +69,9 @@ def _samples(trial: Trial) -> int:
 def run_trial(
     trial: Trial, lines: Sequence[CompiledLine], angles: Sequence[Mapping[str, float]], step: float, *, parts: int = 1
 ) -> list[CompiledRun | SimulationError]:
-    """Each line through one trial from its angles [rad, m], as ``run_trials`` does."""
-    asked = [Through(trial, line, start) for line, start in zip(lines, angles, strict=True)]
-    found = dict(run_trials(asked, step, parts=parts))
+    """Each line through one trial from its angles [rad, m] in steps of at most this length [s], as ``run_trials`` does."""
+    asked = [Through(trial, line, start, step) for line, start in zip(lines, angles, strict=True)]
+    found = dict(run_trials(asked, parts=parts))
     return [found[k] for k in range(len(lines))]
 
 

@@ -37,7 +37,7 @@ def asked() -> list[Through]:
     for k, number in ((0, 0), (1, 0), (0, 1), (2, 0)):
         start = starts[k][number]
         assert start is not None
-        found.append(Through(trials[k], start.line, start.angles))
+        found.append(Through(trials[k], start.line, start.angles, STEP))
     return found
 
 
@@ -51,7 +51,7 @@ def alone(item: Through) -> CompiledRun:
 
 
 def test_lines_of_several_trials_are_run_as_if_each_were_alone(asked: list[Through]) -> None:
-    found = dict(run_trials(asked, STEP))
+    found = dict(run_trials(asked))
     assert sorted(found) == [0, 1, 2, 3]
     for number, item in enumerate(asked):
         run = found[number]
@@ -62,7 +62,7 @@ def test_lines_of_several_trials_are_run_as_if_each_were_alone(asked: list[Throu
     assert any(np.abs(first[name] - third[name]).max() > 0.0 for name in first)
 
 
-def test_trials_that_are_sampled_as_often_share_a_run_the_longest_first(asked: list[Through], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_trials_that_are_sampled_and_stepped_alike_share_a_run(asked: list[Through], monkeypatch: pytest.MonkeyPatch) -> None:
     together: list[list[int]] = []
 
     def counted(lines: Any, samples: Any, *arguments: Any, **keywords: Any) -> Any:
@@ -72,15 +72,19 @@ def test_trials_that_are_sampled_as_often_share_a_run_the_longest_first(asked: l
     long, short = (fold_of(asked[k].trial) * asked[k].trial.samples for k in (0, 1))
     assert short < long
     monkeypatch.setattr(trial_runs, "run_many", counted)
-    list(run_trials(asked, STEP))
+    list(run_trials(asked))
     assert together == [[long, long, long, short]]
     monkeypatch.setattr(trial_runs, "AT_ONCE", 2)
     together.clear()
-    list(run_trials(asked, STEP))
+    list(run_trials(asked))
     assert together == [[long, long], [long, short]]
-    seldom = [Through(replace(asked[0].trial, every=2.0 * asked[0].trial.every), asked[0].line, asked[0].angles), asked[1]]
+    seldom = [Through(replace(asked[0].trial, every=2.0 * asked[0].trial.every), asked[0].line, asked[0].angles, STEP), asked[1]]
     together.clear()
-    list(run_trials(seldom, STEP))
+    list(run_trials(seldom))
+    assert together == [[long], [short]]
+    finer = [replace(asked[0], step=0.5 * STEP), asked[1]]
+    together.clear()
+    list(run_trials(finer))
     assert together == [[long], [short]]
 
 
@@ -94,13 +98,13 @@ def test_what_grows_is_run_again_alone_with_half_the_step(asked: list[Through], 
 
     monkeypatch.setattr(trial_runs, "run_many", counted)
     same = [asked[0], asked[2], asked[3]]
-    found = dict(run_trials(same, STEP))
+    found = dict(run_trials(same))
     (first, parts), (again, twice) = steps
     assert (first, again) == (3, 1)
     assert twice == 2 * parts
     assert isinstance(found[0], CompiledRun)
     steps.clear()
-    [kept] = [run for number, run in run_trials(same, STEP, again=False) if number == 0]
+    [kept] = [run for number, run in run_trials(same, again=False) if number == 0]
     assert isinstance(kept, SimulationError)
     assert len(steps) == 1
 

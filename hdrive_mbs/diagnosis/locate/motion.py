@@ -75,13 +75,13 @@ def motion_of(simulator: Simulator, number: int, hypothesis: Hypothesis, z: Floa
     forces : that act besides
     """
     trial = simulator.trials[number]
-    network = _network(trial, hypothesis, z)
+    network = as_run(trial, hypothesis, z)
     names = [body.name for body in network.bodies]
     watched = [Channel(f"angle:{name}", "", "", partial(Moment.angle, coordinate=name)) for name in names]
     watched += [Channel(f"speed:{name}", "", "", partial(Moment.speed, coordinate=name)) for name in names]
     watched += [Channel(f"state:{state.name}", "", "", partial(Moment.state, name=state.name)) for state in network.states]
     wide = replace(network, channels=(*network.channels, *watched))
-    [run] = _runs(simulator, number, [_line(wide, trial, forces, [channel.name for channel in watched])], [(hypothesis, z)])
+    [run] = _runs(simulator, number, [_line(simulator, number, wide, forces, [channel.name for channel in watched])], [(hypothesis, z)])
     if isinstance(run, SimulationError):
         raise run
     fold = fold_of(trial)
@@ -97,7 +97,7 @@ def columns_of(
     lines: list[CompiledLine | None] = []
     for point in points:
         try:
-            lines.append(_line(_network(trial, hypothesis, point), trial, forces, []))
+            lines.append(_line(simulator, number, as_run(trial, hypothesis, point), forces, []))
         except (ParameterError, LawError):
             lines.append(None)
     good = [k for k, line in enumerate(lines) if line is not None]
@@ -108,16 +108,18 @@ def columns_of(
     return found
 
 
-def _network(trial: Trial, hypothesis: Hypothesis, z: FloatArray) -> Network:
+def as_run(trial: Trial, hypothesis: Hypothesis, z: FloatArray) -> Network:
+    """What is run through a trial: its measured motions given, without what nothing moves."""
     network = following(hypothesis.scene(trial.scene, z).network(), trial.motions)
     if network.is_lateral:
         network = without_idle(network, {**trial.angles, **{f"{name}_rate": value for name, value in trial.speeds.items()}})
     return network
 
 
-def _line(network: Network, trial: Trial, forces: Sequence[KnownForce], more: Sequence[str]) -> CompiledLine:
+def _line(simulator: Simulator, number: int, network: Network, forces: Sequence[KnownForce], more: Sequence[str]) -> CompiledLine:
+    trial = simulator.trials[number]
     pushed = replace(network, elements=(*network.elements, *forces))
-    return CompiledLine(pushed, [*more, *dict.fromkeys(item.channel for item in trial.measured.values())])
+    return CompiledLine(pushed, [*more, *dict.fromkeys(item.channel for item in trial.measured.values())], simulator.slowed)
 
 
 def _runs(
@@ -125,4 +127,4 @@ def _runs(
 ) -> list[CompiledRun | SimulationError]:
     trial = simulator.trials[number]
     angles = [simulator.start_of(number, *point) if trial.settled else dict(trial.angles) for point in points]
-    return run_trial(trial, lines, angles, simulator.step)
+    return run_trial(trial, lines, angles, simulator.steps[number])
