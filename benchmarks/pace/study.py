@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from benchmarks.fits.study import problems
+from benchmarks.fits.study import SEED, problems
 from benchmarks.machine import machine as about
 from benchmarks.withheld.methods import bench_of
 from hdrive_mbs.diagnosis.diagnose import EVERY, factors_of
@@ -33,7 +33,6 @@ CAUSES = (
     "hidden_mode_support",
 )
 """Names of the generator: what stiffens a bearing beside its light ring, and what has corners."""
-SEED = 3301
 AT_ONCE, APART = 8, 0.01
 """Points of a batch, and standard deviations of the parameters between them."""
 
@@ -48,7 +47,7 @@ def study(*, quick: bool, repeats: int) -> dict[str, Any]:
         for problem, cause in problems("rotor", CAUSES[:1] if quick else CAUSES, 1, Path(folder)):
             exact, factors = problem.simulator, factors_of(bench_of("rotor"))
             pace = pace_of(exact.trials, factors, exact.step)
-            quickly = Simulator(exact.trials, pace.steps, EVERY, slowed=pace.slowed)
+            quickly = Simulator(exact.trials, pace.steps, EVERY, slowed=pace.slowed, shortest=pace.shortest)
             fitted = fit(exact, problem.look.hypothesis, problem.look.z, steps=CONVERGED, share=FINE)
             [same] = quickly.residuals(fitted.hypothesis, [fitted.z])
             again = fit(quickly, fitted.hypothesis, fitted.z, steps=CONVERGED, share=FINE)

@@ -114,7 +114,7 @@ def diagnose(
         pace = pace_of(searched, factors, step)
     else:
         pace = Pace((step,) * len(searched))
-    coarse, fine = Simulator(searched, pace.steps, EVERY, slowed=pace.slowed), Simulator(trials, step)
+    coarse, fine = Simulator(searched, pace.steps, EVERY, slowed=pace.slowed, shortest=pace.shortest), Simulator(trials, step)
     check_trials(coarse, factors)
     if aside:
         check_trials(Simulator([trial for trial in trials if trial.held_out.all()], step, EVERY), factors, fitted=False)
@@ -129,7 +129,8 @@ def diagnose(
     check_candidates(tried, coarse, factors)
     journal = None
     if folder is not None:
-        inputs = {"records": chosen, "bench": known, "candidates": tried, "trials": (trials, factors, known.groups, step, pace, EVERY)}
+        steps = step, pace.steps, len(pace.slowed)
+        inputs = {"records": chosen, "bench": known, "candidates": tried, "trials": (trials, factors, known.groups, *steps, EVERY)}
         journal = Journal(folder, inputs)
     others_run = (workers or 1) > 1
     if others_run:
@@ -146,7 +147,7 @@ def diagnose(
     with allowed(lambda: workers or 1):  # its processes have ended
         found = answer(known, chosen, evidence, claim, best, checked, planned, started=started, pictures=pictures)
     notes = (
-        *left_out(tried, evidence.single, coarse.step),
+        *left_out(tried, evidence.single, step),
         *ringing_words(trials),
         *team.lost,
         *(() if journal is None else journal.said),

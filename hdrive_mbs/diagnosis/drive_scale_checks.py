@@ -60,7 +60,7 @@ def _scaled(bench: Bench, records: Sequence[Record], simulator: Simulator, facto
         trials = [trial for record in records for trial in bench.trials(_with(record, name, size))]
         same = {trial.name for trial in simulator.trials}
         chosen = [dataclasses.replace(trial, held_out=np.zeros_like(trial.held_out)) for trial in trials if trial.name in same]
-        return _misfit(Simulator(chosen, simulator.step, simulator.every, slowed=simulator.slowed), factors)
+        return _misfit(Simulator(chosen, simulator.step, simulator.every, slowed=simulator.slowed, shortest=simulator.shortest), factors)
     except (HdriveError, ValueError):
         return np.inf
 

@@ -50,7 +50,7 @@ class Journal:
         """What tasks share: of records and their models what makes them differ within one diagnosis."""
         if isinstance(shared, Simulator):
             unseen = sorted((name, tuple(sorted(trials))) for name, trials in shared.unseen.items())
-            return digest("simulator", shared.steps, shared.every, shared.slowed, unseen)
+            return digest("simulator", shared.steps, shared.every, len(shared.slowed), unseen)
         if isinstance(shared, Screen):
             return digest("screen", self.identity(shared.simulator), shared.null.hypothesis, shared.null.z)
         if isinstance(shared, tuple):

@@ -1,6 +1,6 @@
 """How a search integrates rotor lines: in longer steps than the last fits, with the vibrations slowed that these cannot follow.
 
-The step of a line with light rings is set by vibrations that its records do not show (compiled/slowed.py), and much of a search is
+The step of a line with light rings is set by vibrations that hardly show in its records (compiled/slowed.py), and much of a search is
 integration.  What it finds is fitted to all samples and verified with the line as it is.
 """
 
@@ -36,10 +36,11 @@ EVERY = 8
 
 @dataclass(frozen=True)
 class Pace:
-    """steps : of the integration in each trial [s];  slowed : vibrations"""
+    """steps : of the integration in each trial [s];  slowed : vibrations;  shortest : step of what grows at these [s]"""
 
     steps: tuple[float, ...]
     slowed: tuple[Slowed, ...] = ()
+    shortest: float | None = None
 
 
 def pace_of(trials: Sequence[Trial], factors: Sequence[Factor], step: float) -> Pace:
@@ -52,35 +53,37 @@ def pace_of(trials: Sequence[Trial], factors: Sequence[Factor], step: float) -> 
     points = [np.full(hypothesis.size, size) for size in (0.0, MOVED, -MOVED)]
     sample = float(min(trial.every for trial in trials))
     steps = [sample / parts for parts in PARTS if 1.01 * step < sample / parts <= LONGEST]
-    exact: list[FloatArray | None] = []
+    exact: list[FloatArray] = []
     for longest in steps:
         slowed = _slowed(trials, hypothesis, FOLLOWED / longest)
         if not slowed:
             break
-        exact = exact or Simulator(trials, step, EVERY).residuals(hypothesis, points)
-        if any(item is None for item in exact):
+        exact = exact or [item for item in Simulator(trials, step, EVERY).residuals(hypothesis, points) if item is not None]
+        if len(exact) < len(points):
             break
         chosen: dict[int, float] = {}
         for tried in [item for item in (*steps, step) if item <= longest]:
-            others = [k for k in range(len(trials)) if k not in chosen]
             simulator = Simulator(trials, tried, EVERY, again=False, slowed=slowed)
-            skipped = frozenset(chosen)
-            found = simulator.residuals(hypothesis, points, skipped, [item for item in exact if item is not None])
-            chosen |= {k: tried for k in others if _is_close(simulator, k, found, exact)}
-        if longest in chosen.values() and len(chosen) == len(trials):
-            return Pace(tuple(chosen[k] for k in range(len(trials))), slowed)
+            others = (k for k in range(len(trials)) if k not in chosen)
+            chosen |= {k: tried for k in others if _is_close(simulator, k, hypothesis, points, exact)}
+            if not chosen:  # no trial takes the longest one
+                break
+        if len(chosen) == len(trials):
+            return Pace(tuple(chosen[k] for k in range(len(trials))), slowed, 0.5 * step)
     return Pace((step,) * len(trials))
 
 
 def _slowed(trials: Sequence[Trial], hypothesis: Hypothesis, fastest: float) -> tuple[Slowed, ...]:
-    """Those of the first line that moves across its axis, at rest."""
-    networks = (as_run(trial, hypothesis, np.zeros(hypothesis.size)) for trial in trials)
-    return next((slowed_vibrations(network, fastest) for network in networks if network.is_lateral), ())
+    """Those at rest of the line that moves in most ways across its axis."""
+    networks = [as_run(trial, hypothesis, np.zeros(hypothesis.size)) for trial in trials]
+    return slowed_vibrations(max(networks, key=lambda network: sum(body.lateral for body in network.bodies)), fastest)
 
 
-def _is_close(simulator: Simulator, number: int, some: Sequence[FloatArray | None], others: Sequence[FloatArray | None]) -> bool:
+def _is_close(simulator: Simulator, number: int, hypothesis: Hypothesis, points: Sequence[FloatArray], exact: Sequence[FloatArray]) -> bool:
+    """Whether the runs of one trial are those of the line as it is."""
     spans = [segment.span for segment in simulator.segments if segment.trial == number]
-    for one, other in zip(some, others, strict=True):
-        if one is None or other is None or any(np.sqrt(np.mean((one - other)[span] ** 2)) >= CLOSE for span in spans):
+    others = frozenset(range(len(simulator.trials))) - {number}
+    for one, other in zip(simulator.residuals(hypothesis, points, others, exact), exact, strict=True):
+        if one is None or not all(np.sqrt(np.mean((one - other)[span] ** 2)) < CLOSE for span in spans):
             return False
     return True

@@ -269,7 +269,8 @@ class Diagnosis:
     notes : what else he has to know (fits that did not converge, verification on the engine, ...)
     inputs : columns that drive the scene, and the field each of them was put into
     files : record -> its source and sha256, of records that were read from files
-    settings : step [s], every (samples of which a search compares one), candidates (classes and places), searched and held_out (records)
+    settings : step of the last fits and steps_of_search by record [s], slowed_in_search (vibrations, see ``pace_of``), every (samples of
+        which a search compares one), candidates (classes and places), searched and held_out (records)
     forces, loops, order_maps : for pictures: at the located place, most telling record first
     """
 

@@ -48,7 +48,8 @@ class Simulator:
 
     trials : at least one;  step : longest step of the integration [s], or one for each of them
     every : compare only each such sample: a cheaper look, less sharp
-    parts : in which each step is divided;  again : whether what grows at it is run again with half of it, see ``run_trials``
+    parts : in which each step is divided;  again : whether what grows at it is run again with half of it, see ``run_trials``,
+        or with the ``shortest`` one [s]
     slowed : vibrations that are slowed in all lines (pace.py)
 
     unseen : by name of a nominal parameter the trials in which it is not believed to show (``Simulator.knowing``)
@@ -66,11 +67,15 @@ class Simulator:
         parts: int = 1,
         again: bool = True,
         slowed: Sequence[Slowed] = (),
+        shortest: float | None = None,
     ) -> None:
         if not trials:
             raise ParameterError("A diagnosis needs at least one record.")
         self.trials, self.every, self.parts, self.again = tuple(trials), every, parts, again
         self.steps = tuple(step) if isinstance(step, Sequence) else (step,) * len(self.trials)
+        if len(self.steps) != len(self.trials):
+            raise ParameterError(f"{len(self.steps)} steps for {len(self.trials)} trials; give one for all or one for each.")
+        self.shortest = shortest
         self.slowed = tuple(slowed)
         segments: list[Segment] = []
         fit: list[Mask] = []
@@ -232,7 +237,7 @@ class Simulator:
 
     def _run(self, starts: Sequence[tuple[int, Start]]) -> list[Values | None]:
         """Values of the columns of trials from starts, each with the number of its trial."""
-        asked = [Through(self.trials[number], start.line, start.angles, self.steps[number]) for number, start in starts]
+        asked = [Through(self.trials[number], start.line, start.angles, self.steps[number], self.shortest) for number, start in starts]
         self.runs += len(asked)
         found: dict[int, Values | None] = {}
         for k, run in run_trials(asked, parts=self.parts, again=self.again):

@@ -28,32 +28,42 @@ AT_ONCE = 16
 
 @dataclass(frozen=True, eq=False)
 class Through:
-    """A line that is to go through a trial from its angles [rad, m], in steps of the integration of at most this length [s]."""
+    """A line that is to go through a trial from its angles [rad, m].
+
+    step, shortest : longest steps of the integration [s], and those of what grows at them; half of them if not given
+    """
 
     trial: Trial
     line: CompiledLine
     angles: Mapping[str, float]
     step: float
+    shortest: float | None = None
 
 
 def run_trials(asked: Sequence[Through], *, parts: int = 1, again: bool = True) -> Iterator[tuple[int, CompiledRun | SimulationError]]:
     """(number of what was asked, its run), in an order of its own.
 
     parts : in which each step is divided
-    again : whether what grows is run again with half of it: what stiffens a line may need that
+    again : whether what grows is run again with the shortest ones: what stiffens a line may need that
     """
-    alike: dict[tuple[float, int], list[int]] = {}
+    alike: dict[tuple[float, int, int], list[int]] = {}
     for number, item in enumerate(asked):
         every = item.trial.every / fold_of(item.trial)
-        alike.setdefault((every, math.ceil(every / item.step * (1.0 - 1e-9))), []).append(number)
-    for (every, inner), numbers in alike.items():
+        inner = _whole(every / item.step)
+        finest = 2 * inner if item.shortest is None else _whole(every / item.shortest)
+        alike.setdefault((every, inner, finest), []).append(number)
+    for (every, inner, finest), numbers in alike.items():
         numbers.sort(key=lambda k: -_samples(asked[k].trial))  # those that go to the same end together
         for first in range(0, len(numbers), AT_ONCE):
             some = numbers[first : first + AT_ONCE]
             found = dict(zip(some, _side_by_side([asked[k] for k in some], every, inner * parts), strict=True))
             if wild := [k for k, item in found.items() if again and _grows(item, asked[k].trial)]:
-                found.update(zip(wild, _side_by_side([asked[k] for k in wild], every, 2 * inner * parts), strict=True))
+                found.update(zip(wild, _side_by_side([asked[k] for k in wild], every, finest * parts), strict=True))
             yield from found.items()
+
+
+def _whole(steps: float) -> int:
+    return math.ceil(steps * (1.0 - 1e-9))
 
 
 def _side_by_side(asked: Sequence[Through], every: float, inner: int) -> list[CompiledRun | SimulationError]:

@@ -134,5 +134,5 @@ def verified(simulator: Simulator, fitted: Fitted) -> Verified:
     if own < AGREES:
         return Verified(text, not agrees)
     step = simulator.step
-    sharper = f"The search's step of {step:.3g} s errs by {own:.2g} of the noise there: diagnose again with step={0.5 * step:.3g}."
+    sharper = f"The step of {step:.3g} s errs by {own:.2g} of the noise there: diagnose again with step={0.5 * step:.3g}."
     return Verified(f"{text} {sharper}", differs=True)

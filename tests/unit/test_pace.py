@@ -49,7 +49,7 @@ def test_residuals_are_those_of_the_line_as_it_is_wherever_the_parameters_are(tr
     hypothesis = Hypothesis(factors=FACTORS)
     points = list(np.random.default_rng(3).normal(size=(3, len(FACTORS))))
     exact = Simulator(trials, suitable_step(trials, FACTORS)).residuals(hypothesis, points)
-    quick = Simulator(trials, pace.steps, slowed=pace.slowed)
+    quick = Simulator(trials, pace.steps, slowed=pace.slowed, shortest=pace.shortest)
     for one, other in zip(exact, quick.residuals(hypothesis, points), strict=True):
         assert one is not None
         assert other is not None

@@ -83,6 +83,34 @@ def test_a_damped_spinning_line_takes_longer_steps_and_nothing_grows(network: Ne
         assert apart.max() < 1e-4
 
 
+def test_with_masses_and_stiffnesses_off_nothing_grows_and_slow_vibrations_are_theirs(network: Network) -> None:
+    """All in one, by a tenth and more: what a fit moves, slowed as the nominal line is."""
+    slowed = slowed_vibrations(network, FASTEST)
+    factors = {"rotor_1_mass": 1.1, "rotor_2_mass": 0.9, "ring_mass": 1.2, "bearing_stiffness": 0.8, "youngs_modulus": 1.1}
+    other = rotor_bench.build("run_up", **{name: factor * rotor_bench.NOMINAL[name] for name, factor in factors.items()})
+    line = without_idle(other.network())
+    n, change = len(line.bodies), changed(line, slowed)
+    whole = np.eye(2 * n + len(line.states))
+    whole[n : 2 * n, n : 2 * n] = change
+    rates = jacobian(line, speeds={rotor.coordinates[5]: 500.0 for rotor in line.rotors})
+    before, after = np.linalg.eigvals(rates), np.linalg.eigvals(whole @ rates)
+    assert after.real.max() < before.real.max() + 1e-3
+    assert stable_step(after) > SAMPLE
+    seen = before[(np.abs(before.imag) > 100.0) & (np.abs(before.imag) < 3000.0)]
+    apart = np.abs(after[None, :] - seen[:, None]).min(axis=1) / np.abs(seen)
+    assert apart.max() < 1e-3
+
+
+def test_planes_that_are_alike_are_slowed_apart() -> None:
+    """Their vibrations are equal, and any mixture of the two would be one too."""
+    alike = rotor_bench.build("run_up", support_stiffness_y=rotor_bench.NOMINAL["support_stiffness_x"])
+    found = slowed_vibrations(without_idle(alike.network()), FASTEST)
+    assert len(found) == 6
+    for vibration in found:
+        planes = {name.rpartition(".")[2] for name, _, _ in vibration.parts}
+        assert planes <= {"x", "theta"} or planes <= {"y", "psi"}
+
+
 def test_a_run_in_whole_samples_is_that_of_the_line_as_it_is(network: Network) -> None:
     channels = {column: rotor_bench.CHANNELS[column] for column in ("r1_x", "r2_y", "h1_ax", "h2_ay")}
     names = tuple(channels.values())

@@ -104,6 +104,9 @@ def test_what_grows_is_run_again_alone_with_half_the_step(asked: list[Through], 
     assert twice == 2 * parts
     assert isinstance(found[0], CompiledRun)
     steps.clear()
+    list(run_trials([replace(item, shortest=0.2 * STEP) for item in same]))
+    assert steps == [(3, parts), (1, 5 * parts)]
+    steps.clear()
     [kept] = [run for number, run in run_trials(same, again=False) if number == 0]
     assert isinstance(kept, SimulationError)
     assert len(steps) == 1
