@@ -14,8 +14,8 @@ from hdrive_mbs.diagnosis import nearly, second_cause, unevenness, verdict
 
 ROOT = Path(__file__).parents[2]
 OWN = ROOT / "benchmarks" / "withheld" / "own"
-ORDINALS = {"2nd": 2, "3rd": 3, "21st": 21, "22nd": 22, "23rd": 23, "31st": 31, "32nd": 32}
-ORDINALS |= {f"{number}th": number for number in (*range(4, 21), *range(24, 31))}
+ENDINGS = {1: "st", 2: "nd", 3: "rd"}
+ORDINALS = {f"{number}{'th' if 10 <= number % 100 <= 20 else ENDINGS.get(number % 10, 'th')}": number for number in range(2, 100)}
 ROWS = re.findall(r"^\| (drive|rotor) bench, (\S+) \| (.*) \|$", (ROOT / "docs" / "diagnosis.md").read_text("utf-8"), re.MULTILINE)
 
 
