@@ -47,10 +47,12 @@ SHALLOW = Depth(brief=(4, 6), laws=1, kept=(2, 3), serious=2)
 GLANCE = replace(SHALLOW, held=False)
 """Likewise beside a first one that leaves little: what is missing has bent little then."""
 NOTICED = 0.2
-"""Share of the logarithm of what the first cause leaves that the best pair has to take before its causes are exchanged and told by other
-laws: in 23 cases with two causes of our own drive sets 17 to 23 and rotor sets 21 to 24 the best pair of a search took 0.42 or more, and
-in seven of eleven with one cause 0.18 or less.  Where a search misses the right second cause its best pair may take less too: 0.19 in c09
-of our own twenty-sixth rotor set (tests/unit/test_pair_constants.py)."""
+"""Share of the logarithm of what the first cause leaves, or of its misfit above noise, that the best pair has to take before its causes are
+exchanged and told by other laws.  Of the logarithm, in 23 cases with two causes of our own drive sets 17 to 23 and rotor sets 21 to 24 the
+best pair of a search took 0.42 or more, and in seven of eleven with one cause 0.18 or less.  Where a search misses the right second cause
+its best pair may take less too: 0.19 in c09 of our own twenty-sixth rotor set.  Of the misfit, which counts stretches that fit badly by
+their logarithm: where a few of these rule the mean square, a right second cause took 0.03 and 0.11 of the one and 0.27 of the other (c04
+of our own thirty-second drive set, c19 of the thirty-first; tests/unit/test_pair_constants.py)."""
 AGAIN = 0.5
 """Share of the logarithm of what a law that is nearly right may leave, above which a pair has the first cause looked for again beside the
 second: it may have stood for another one.  A rub beside a hardening bearing left 1.03 of 5.0 on all samples, where a mass that swings on
@@ -125,7 +127,7 @@ def second_cause(
         together = [*pair.found, *together]
     if not together:
         return pair, (), ()
-    best = _followed_up(together, first, much=much)
+    best = _followed_up(together, first, samples if much else None)
     if best is None:
         return pair, (), ()
     said("exchanging causes of the best pair", 0, 1)
@@ -156,20 +158,23 @@ def second_cause(
     return pair, pairs, tuple(others)
 
 
-def _followed_up(together: Sequence[Found], first: Found, *, much: bool) -> Found | None:
+def _followed_up(together: Sequence[Found], first: Found, samples: int | None) -> Found | None:
     """The pair whose causes are exchanged: the cheapest if it takes enough of what the first cause leaves, else of those that do the one
     that leaves least; None where none does.
 
     Freedom may take what the fit saw and nothing of the rest: beside a friction the spectrum of a ripple left 8.4 and 27 of 17 and 26 in a
     search, and a ripple of one order 10 and 10 (c19 of our own thirty-first drive set, labels open).
 
-    much : whether the first cause leaves much
+    samples : fitted ones; None where the first cause leaves little
     """
     before = left(first.fitted)
 
     def is_noticed(item: Found) -> bool:
         after = left(item.fitted)
-        return taken(before, after) > NOTICED if much else takes_most(before, after)
+        if samples is None:
+            return takes_most(before, after)
+        above_noise = first.fitted.cost - 0.5 * samples
+        return taken(before, after) > NOTICED or first.fitted.cost - item.fitted.cost > NOTICED * above_noise
 
     best = min(together, key=lambda item: item.fitted.cost)
     return best if is_noticed(best) else min(filter(is_noticed, together), key=lambda item: left(item.fitted), default=None)

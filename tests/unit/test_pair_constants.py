@@ -113,6 +113,21 @@ def test_the_best_pair_of_a_search_that_misses_the_second_cause_may_take_less() 
     assert labels[:2] == [("bearing_clearance", "bearing_2"), ("looseness", "bearing_2")]
 
 
+def test_where_a_few_stretches_rule_the_mean_square_a_second_cause_takes_more_of_the_misfit() -> None:
+    """Of the sets answered with the bound on the logarithm alone, by which neither pair was followed up."""
+    stored_ = dict(cases(("drive", 31), ("drive", 32)))
+    clean = min(stored_["drive_31 drive-c16"].raw["second"], key=lambda item: item["cost"])
+    assert clean["fit"] == pytest.approx(1.003, abs=1e-3)
+    noise = clean["misfit"] / clean["fit"]  # of all cases of the bench, which have as many samples
+    for name, logarithm, misfit in (("drive_31 drive-c19", 0.1086, 0.270), ("drive_32 drive-c04", 0.0309, 0.273)):
+        case = stored_[name]
+        first, best = case.raw["search"][0], min(case.raw["second"], key=lambda item: item["cost"])
+        assert len(case.labels["truth"]) == 2
+        assert names_of("drive").name(label(best)) in [(item["effect"], item["at"]) for item in case.labels["truth"]]
+        assert taken(left(first), left(best)) == pytest.approx(logarithm, abs=5e-5)
+        assert (first["misfit"] - best["misfit"]) / (first["misfit"] - noise) == pytest.approx(misfit, abs=1e-3)
+
+
 def test_of_right_pairs_few_leave_so_much_that_the_first_cause_is_looked_for_again_and_of_wrong_ones_all() -> None:
     """What the answer of two causes leaves on all samples, of every case of these sets whose fits are kept."""
     numbers = {"drive": range(17, 28), "rotor": (*range(9, 20), *range(21, 25), 26, 28, 29)}
