@@ -56,10 +56,7 @@ def test_the_last_four_sets_together_are_the_sums_of_theirs(bench: str) -> None:
 def test_the_sets_since_a_method_are_told_as_they_came_out() -> None:
     text = (ROOT / "docs" / "diagnosis.md").read_text("utf-8")
     [(sets, told)] = re.findall(r"^Both benches, .+ answered by 04cb5ea or later, .+ \((.+)\): (cause .+)\.$", text, re.MULTILINE)
-    named = {
-        bench: [int(number) for number in re.findall(r"\d+", words)]
-        for bench, words in zip(("drive", "rotor"), sets.split(", "), strict=True)
-    }
+    named = {bench: list(range(int(first), int(last) + 1)) for bench, first, last in re.findall(r"(drive|rotor) (\d+) to (\d+)", sets)}
     there = {bench: sorted(int(path.parent.name.partition("_")[2]) for path in OWN.glob(f"{bench}_[0-9]*/results.json")) for bench in named}
     assert named == {bench: [number for number in there[bench] if number >= first] for bench, first in (("drive", 29), ("rotor", 31))}
     names = [f"{bench}_{number}" for bench, numbers in named.items() for number in numbers]
