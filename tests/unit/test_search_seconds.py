@@ -69,5 +69,6 @@ def test_what_needs_no_further_search_is_as_good_as_without_a_limit() -> None:
     given = records(two()[1])
     short, long = (diagnose(bench(), given, candidates=KINDS, pictures=False, search_seconds=limit) for limit in (1e-6, None))
     assert short_of(short) == []
-    assert [(c.effect, c.at, c.parameters) for c in short.causes] == [(c.effect, c.at, c.parameters) for c in long.causes]
+    # by their digits: a nominal value of nan equals no other one where fields are compared one by one, as from Python 3.13 on
+    assert [(c.effect, c.at, repr(c.parameters)) for c in short.causes] == [(c.effect, c.at, repr(c.parameters)) for c in long.causes]
     assert short.gap == long.gap
