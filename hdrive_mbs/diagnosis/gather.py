@@ -19,6 +19,7 @@ from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.later import Later
 from hdrive_mbs.diagnosis.located import Located, bends, located
 from hdrive_mbs.diagnosis.nominal_again import nominal_again
+from hdrive_mbs.diagnosis.pairs import causes_of, laws_of
 from hdrive_mbs.diagnosis.search import Search, fit_nominal, search
 from hdrive_mbs.diagnosis.second_cause import LEFT, second_cause, wants_second
 from hdrive_mbs.diagnosis.simulator import Simulator
@@ -37,6 +38,8 @@ SINGLES = 3
 ALIKE = 6
 """Labels that the search cannot tell from the best, which are fitted on all samples besides: all stations of a line that is stiff in
 torsion, say, where only some of them would be named as tied otherwise."""
+RESERVE = 3
+"""Further laws of one cause, and of two, that are fitted on all samples where those fitted there leave something."""
 CLOSE = 0.02
 """Share of the best law's log odds within which another law of the same cause is fitted on all samples too."""
 
@@ -89,6 +92,22 @@ def close_laws(found: Sequence[Found]) -> tuple[Found, ...]:
     least = found[0].log_odds - max(TIED, CLOSE * found[0].log_odds)
     others = (item for item in found if item.suspect.label == best.label and item.suspect.law != best.law)
     return tuple(item for item in others if item.log_odds > least)[:1]
+
+
+def in_reserve(found: Sequence[Found], told: Sequence[Found]) -> tuple[Found, ...]:
+    """Further laws of what came out best, each at its best: the records that a search does not see may tell them apart.
+
+    found : by the search;  told : what is fitted on all samples in any case, best first
+    """
+    if not told:
+        return ()
+    known = {laws_of(item.fitted.hypothesis) for item in told}
+    laws: dict[frozenset[object], Found] = {}
+    best = causes_of(min(told, key=lambda item: item.fitted.cost).fitted.hypothesis)
+    for item in sorted(found, key=lambda item: item.fitted.cost):
+        if causes_of(item.fitted.hypothesis) == best and laws_of(item.fitted.hypothesis) not in known:
+            laws.setdefault(laws_of(item.fitted.hypothesis), item)
+    return tuple(laws.values())[:RESERVE]
 
 
 def _with(search_: Search, more: Sequence[Found]) -> Search:
@@ -207,11 +226,17 @@ def gather(
         double = ()  # its second cause stood beside a wrong first one: had it been found at once, no other would have been looked for
     single = _with(single, tied_places(team, coarse, null, everything, single.found, serious(single.labels)))
     ones = (*serious(single.labels), *close_laws(single.found))
-    last = on_all_samples(team, fine, null, [item.fitted for item in (*ones, *double)], place, partial(said, "all samples"))
+    more = in_reserve(single.found, ones), () if pair is None else in_reserve(pair.found, double)
+    whole, asked_ = (*ones, *double, *more[0], *more[1]), len(ones) + len(double)
+    fits = [item.fitted for item in whole]
+    last = on_all_samples(team, fine, null, fits[:asked_], place, partial(said, "all samples"), fits[asked_:])
     final = [
         None if fitted is None else proven(Found(item.suspect, fitted), last.refitted)
-        for item, fitted in zip((*ones, *double), last.others, strict=True)
+        for item, fitted in zip(whole, last.others, strict=True)
     ]
-    singles = sorted(filter(None, final[: len(ones)]), key=lambda item: -item.log_odds)
-    pairs = tuple(sorted(filter(None, final[len(ones) :]), key=lambda item: -item.log_odds))
-    return Evidence(fine, last.nominal, last.refitted, single, pair, tuple(singles), pairs, last.place)
+    of_one = {*range(len(ones)), *range(asked_, asked_ + len(more[0]))}
+    singles, pairs = (
+        tuple(sorted((item for k, item in enumerate(final) if item is not None and (k in of_one) is one), key=lambda item: -item.log_odds))
+        for one in (True, False)
+    )
+    return Evidence(fine, last.nominal, last.refitted, single, pair, singles, pairs, last.place)

@@ -142,7 +142,7 @@ def replaced(
     pairs : at least one, fitted to the end;  others : of a hypothesis and the number of a cause in it, what is tried in its place
     by_law : whether two causes with other laws count as another pair
     """
-    names = _laws_of if by_law else causes_of
+    names = laws_of if by_law else causes_of
     best = min(pairs, key=lambda item: item.fitted.cost)
     full, z = best.fitted.hypothesis.rescaled(best.fitted.z)
     known = {names(item.fitted.hypothesis) for item in pairs}
@@ -223,5 +223,6 @@ def causes_of(hypothesis: Hypothesis) -> frozenset[object]:
     return frozenset((*hypothesis.labels, *hypothesis.loose))
 
 
-def _laws_of(hypothesis: Hypothesis) -> frozenset[object]:
+def laws_of(hypothesis: Hypothesis) -> frozenset[object]:
+    """Likewise with the law of each cause: by it two ways to tell the same causes are two."""
     return frozenset((*((item.label, type(item.effect)) for item in hypothesis.added), *hypothesis.loose))
