@@ -13,10 +13,12 @@ from hdrive_mbs.diagnosis.all_samples import LAST, LONG, on_all_samples
 from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.from_its_values import from_its_values
+from hdrive_mbs.diagnosis.gather import in_reserve
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.located import Located
 from hdrive_mbs.diagnosis.simulator import Simulator
-from hdrive_mbs.diagnosis.tasks import RIVAL, Task
+from hdrive_mbs.diagnosis.suspects import Suspect
+from hdrive_mbs.diagnosis.tasks import RIVAL, Found, Task
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.verdict import TIED
 from tests.unit.diagnosis_cases import bench, records
@@ -131,3 +133,56 @@ def test_the_best_fit_goes_on_to_its_end_where_it_leaves_something(
     [best] = last.others
     assert best is not None
     assert best.cost == 500.0 - len(patient)
+
+
+@pytest.mark.parametrize(
+    ("leaves", "in_search", "asked_for"),
+    [
+        (1.3, 1.01, True),
+        (1.3, 1.4, False),  # it left more there than the best does here
+        (1.01, 1.005, False),  # nothing is left to be told
+    ],
+)
+def test_a_law_in_reserve_is_fitted_where_the_best_leaves_more_than_it_did_in_the_search(
+    simulator: Simulator, plain: Fitted, monkeypatch: pytest.MonkeyPatch, leaves: float, in_search: float, asked_for: bool
+) -> None:
+    asked: list[str] = []
+
+    def run(fine: Simulator, task: Task) -> Fitted:
+        if not task.hypothesis.added:
+            return plain
+        kind = type(task.hypothesis.added[0].effect).__name__
+        asked.append(kind)
+        if kind == "DahlFriction":
+            assert task.beat == 1000.0 + RIVAL
+            return fitted(plain, task.hypothesis.added[0].effect, "load", 600.0, chi_fit=1.0, converged=True)
+        return fitted(plain, coulomb(0.2), "load", 1000.0, chi_fit=leaves, converged=True)
+
+    monkeypatch.setattr(all_samples, "run_task", run)
+    found = [fitted(plain, coulomb(0.2), "load", 100.0, chi_fit=1.005, converged=True)]
+    reserve = [fitted(plain, hm.DahlFriction(coulomb=0.2, presliding=0.01), "load", 120.0, chi_fit=in_search, converged=True)]
+    with Team(1) as team:
+        null = dataclasses.replace(plain, chi_fit=90.0)
+        last = on_all_samples(team, simulator, null, found, NOT_LOOKED, lambda done, total: None, reserve)
+    assert ("DahlFriction" in asked) is asked_for
+    first, second = last.others
+    assert first is not None
+    assert first.cost == 1000.0
+    assert (second is not None) is asked_for
+    assert second is None or second.cost == 600.0
+
+
+def test_in_reserve_are_further_laws_of_what_came_out_best(plain: Fitted) -> None:
+    def found(effect: hm.Effect, place: str, cost: float) -> Found:
+        item = fitted(plain, effect, place, cost)
+        return Found(Suspect(item.hypothesis.added[-1].label, type(effect).__name__, (item.hypothesis,), (item.hypothesis,)), item)
+
+    told = [found(coulomb(0.2), "load", 100.0), found(coulomb(0.2), "motor", 105.0)]
+    dahl, worse, elsewhere = (
+        found(hm.DahlFriction(coulomb=0.2, presliding=0.01), place, cost)
+        for place, cost in (("load", 120.0), ("load", 130.0), ("motor", 90.0))
+    )
+    drag = found(hm.ViscousDrag(coefficient=0.1), "load", 80.0)
+    assert in_reserve([drag, worse, elsewhere, *told, dahl], told) == (dahl,)
+    assert in_reserve([dahl], []) == ()
+    assert in_reserve([dahl], [told[0], dahl]) == ()
