@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from benchmarks.withheld.calibration import expected_error
 from benchmarks.withheld.case_score import interval
 from hdrive_mbs.diagnosis import nearly, second_cause, unevenness, verdict
 
@@ -60,7 +61,8 @@ def test_the_sets_since_a_method_are_told_as_they_came_out() -> None:
     there = {bench: sorted(int(path.parent.name.partition("_")[2]) for path in OWN.glob(f"{bench}_[0-9]*/results.json")) for bench in named}
     assert named == {bench: [number for number in there[bench] if number >= first] for bench, first in (("drive", 29), ("rotor", 31))}
     names = [f"{bench}_{number}" for bench, numbers in named.items() for number in numbers]
-    methods = [json.loads((OWN / name / "results.json").read_text("utf-8"))["methods"]["diagnosis"] for name in names]
+    results = [json.loads((OWN / name / "results.json").read_text("utf-8")) for name in names]
+    methods, cases = [item["methods"]["diagnosis"] for item in results], [case for item in results for case in item["cases"]]
 
     def counted(name: str, *, bounds: bool = False) -> str:
         right, of = sum(found[name]["right"] for found in methods), sum(found[name]["of"] for found in methods)
@@ -69,7 +71,9 @@ def test_the_sets_since_a_method_are_told_as_they_came_out() -> None:
 
     first = f"cause right in {counted('effect right', bounds=True)}, place right in {counted('place right', bounds=True)}"
     more = f"both of two in {counted('both of two')}, nulls kept in {counted('nulls kept')}"
-    assert told == f'{first}, {more}, no known cause answered "unknown" in {counted("unknown caught")}'
+    error = expected_error([case["confidence"] for case in cases], [case["effect"] for case in cases])
+    unknown = f'no known cause answered "unknown" in {counted("unknown caught")}'
+    assert told == f"{first}, {more}, {unknown}; calibration error of all {len(cases)} together {error:.3f}"
 
 
 def test_the_nulls_of_their_own_are_told_as_they_came_out() -> None:
