@@ -185,18 +185,12 @@ class Lines:
             return None
         trial = self._trials[k]
         try:
-            return self._made(network, trial)
+            return _compiled(network, trial, self._slowed)
         except ParameterError:
             if k not in self._followed:
-                self._made(trial.scene.network(), trial)
+                _compiled(trial.scene.network(), trial, self._slowed)
                 self._followed.add(k)
             return None
-
-    def _made(self, network: Network, trial: Trial) -> CompiledLine:
-        driven = following(network, trial.motions)
-        if driven.is_lateral:
-            driven = without_idle(driven, {**trial.angles, **{f"{name}_rate": value for name, value in trial.speeds.items()}})
-        return CompiledLine(driven, _channels(trial), self._slowed)
 
 
 @contextmanager
@@ -219,6 +213,13 @@ def _resting(lines: Sequence[CompiledLine | None], angles: Mapping[str, float]) 
 
 def _channels(trial: Trial) -> list[str]:
     return [trial.measured[column].channel for column in trial.columns]
+
+
+def _compiled(network: Network, trial: Trial, slowed: Sequence[Slowed] = ()) -> CompiledLine:
+    driven = following(network, trial.motions)
+    if driven.is_lateral:
+        driven = without_idle(driven, {**trial.angles, **{f"{name}_rate": value for name, value in trial.speeds.items()}})
+    return CompiledLine(driven, _channels(trial), slowed)
 
 
 def _network(hypothesis: Hypothesis, scene: Scene, point: FloatArray) -> Network | None:
