@@ -44,7 +44,7 @@ def study(*, quick: bool, repeats: int) -> dict[str, Any]:
     exact_s, quick_s: CPU of a batch."""
     rows: list[dict[str, Any]] = []
     with tempfile.TemporaryDirectory() as folder:
-        for problem, cause in problems("rotor", CAUSES[:1] if quick else CAUSES, 1, Path(folder)):
+        for problem, cause in problems("rotor", CAUSES[:1] if quick else CAUSES, 1, Path(folder) / "rotor"):
             exact, factors = problem.simulator, factors_of(bench_of("rotor"))
             pace = pace_of(exact.trials, factors, exact.step)
             quickly = Simulator(exact.trials, pace.steps, EVERY, slowed=pace.slowed, shortest=pace.shortest)
