@@ -40,6 +40,7 @@ AT_ONCE, APART = 8, 0.01
 def study(*, quick: bool, repeats: int) -> dict[str, Any]:
     """Rows: case, cause, law, place, steps [s] and those of the line as it is, slowed (number of vibrations);
     exact, quick, refitted: mean square of the law fitted with the line as it is, of the same point at the pace, and of the fit at the pace;
+    ended: whether both fits had come to their end;
     moved: largest move of a nominal parameter between both fits in its standard deviations after the fit;
     exact_s, quick_s: CPU of a batch."""
     rows: list[dict[str, Any]] = []
@@ -61,6 +62,7 @@ def study(*, quick: bool, repeats: int) -> dict[str, Any]:
                     "exact": fitted.chi_fit,
                     "quick": float("inf") if same is None else chi_square(same, quickly.fit),
                     "refitted": again.chi_fit,
+                    "ended": fitted.converged and again.converged,
                     "moved": _moved(fitted, again),
                     **_times({"exact_s": exact, "quick_s": quickly}, fitted, repeats),
                 }

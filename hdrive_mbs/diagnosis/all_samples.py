@@ -25,11 +25,8 @@ Work = Callable[[Simulator], Any]
 
 LAST, LONG = 4, 20
 """Steps that these fits may take, and those of the best."""
-ROUNDS, MORE = 2, 3
-"""In which fits begin again from the values of the best one, and more of LONG steps that the best may take where it still comes down: one
-of the 88 cases of our own drive sets 30 and 31 and rotor sets 32 and 33 had not come to its end after the first and left more than SEEN.  A
-shaft and a bearing that drive whirl together left 0.999 in a search, and 1.52 and 5.4 on all samples, with the record that the search had
-not seen (c14 of our own thirty-third rotor set, labels open)."""
+ROUNDS = 2
+"""In which fits begin again from the values of the best one."""
 EXACT = 1e-6
 """Relative change of the cost that ends them where little is left."""
 CANNOT_RUN = "The nominal scene cannot be simulated through all of the records; look at its start values and inputs."
@@ -101,8 +98,8 @@ def _from_reserve(
     """Fits of those in reserve that left less on fewer samples than the best does on all, where it leaves something.
 
     Records that a search does not see may tell laws apart that are alike in the others: a bearing that drives whirl left 1.005 with a law
-    of its onset, and 1.002 with one of its cycle, which was the third of them; on all samples 1.46 and 1.001 (c16 of our own thirty-fourth
-    rotor set, labels open).
+    of its onset and 1.002 with one of its cycle, and on all samples 1.46 and 1.001 (c16 of our own thirty-fourth rotor set, labels open,
+    each fitted without the other; by a script that is not kept).
     """
     best = min(filter(None, fits.values()), key=lambda item: item.cost, default=None)
     if best is None or best.chi_fit < SEEN:
@@ -129,19 +126,7 @@ def _levelled(team: Team, fine: Simulator, fits: Mapping[int, Fitted | None], br
         ran |= {k: item for k, item in zip(tasks, found, strict=True) if item is not None and item.cost < ran[k].cost}
         if min(ran, key=lambda number: ran[number].cost) == best:
             break
-    if ran:
-        best = min(ran, key=lambda number: ran[number].cost)
-        ran[best] = _ended(fine, ran[best])
     return ran
-
-
-def _ended(fine: Simulator, found: Fitted) -> Fitted:
-    """A fit that has not come to its end and leaves something, fitted on with patience."""
-    for _ in range(MORE):
-        if found.converged or found.chi_fit < SEEN:
-            break
-        found = run_task(fine, further(found, LONG, EXACT, patient=True)) or found
-    return found
 
 
 def _done(fine: Simulator, work: Work) -> Any:

@@ -227,16 +227,14 @@ def gather(
     single = _with(single, tied_places(team, coarse, null, everything, single.found, serious(single.labels)))
     ones = (*serious(single.labels), *close_laws(single.found))
     more = in_reserve(single.found, ones), () if pair is None else in_reserve(pair.found, double)
-    whole, asked_ = (*ones, *double, *more[0], *more[1]), len(ones) + len(double)
+    whole = *ones, *double, *more[0], *more[1]
+    one, both, last_one = len(ones), len(ones) + len(double), len(ones) + len(double) + len(more[0])
     fits = [item.fitted for item in whole]
-    last = on_all_samples(team, fine, null, fits[:asked_], place, partial(said, "all samples"), fits[asked_:])
+    last = on_all_samples(team, fine, null, fits[:both], place, partial(said, "all samples"), fits[both:])
     final = [
         None if fitted is None else proven(Found(item.suspect, fitted), last.refitted)
         for item, fitted in zip(whole, last.others, strict=True)
     ]
-    of_one = {*range(len(ones)), *range(asked_, asked_ + len(more[0]))}
-    singles, pairs = (
-        tuple(sorted((item for k, item in enumerate(final) if item is not None and (k in of_one) is one), key=lambda item: -item.log_odds))
-        for one in (True, False)
-    )
+    singles, pairs = (*final[:one], *final[both:last_one]), (*final[one:both], *final[last_one:])
+    singles, pairs = (tuple(sorted(filter(None, some), key=lambda item: -item.log_odds)) for some in (singles, pairs))
     return Evidence(fine, last.nominal, last.refitted, single, pair, singles, pairs, last.place)

@@ -27,7 +27,7 @@ FOLLOWED = 2.2
 CLOSE = ERROR / 3.0
 """Standard deviations of the noise (rms, worst column) that the longer step of a trial may cost: with a corner in a law it costs more than
 with none.  In whole samples a blow on a line cost 0.07 of the nominal one, and with a clearance in a bearing 0.6 and 0.9 in two
-accelerations (c17 of our own thirty-second rotor set, labels open)."""
+accelerations (c17 of our own thirty-second rotor set, labels open; by a script that is not kept)."""
 MOVED = 1.0
 """Standard deviations by which all parameters are moved for a second and a third comparison."""
 EVERY = 8

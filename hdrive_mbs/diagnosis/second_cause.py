@@ -127,8 +127,8 @@ def second_cause(
         together = [*pair.found, *together]
     if not together:
         return pair, (), ()
-    best = _followed_up(together, first, samples if much else None)
-    if best is None:
+    best = min(together, key=lambda item: item.fitted.cost)
+    if not (_is_noticed(best, first, samples) if much else takes_most(left(first.fitted), left(best.fitted))):
         return pair, (), ()
     said("exchanging causes of the best pair", 0, 1)
     exchanged = (
@@ -158,26 +158,10 @@ def second_cause(
     return pair, pairs, tuple(others)
 
 
-def _followed_up(together: Sequence[Found], first: Found, samples: int | None) -> Found | None:
-    """The pair whose causes are exchanged: the cheapest if it takes enough of what the first cause leaves, else of those that do the one
-    that leaves least; None where none does.
-
-    Freedom may take what the fit saw and nothing of the rest: beside a friction the spectrum of a ripple left 8.4 and 27 of 17 and 26 in a
-    search, and a ripple of one order 10 and 10 (c19 of our own thirty-first drive set, labels open).
-
-    samples : fitted ones; None where the first cause leaves little
-    """
-    before = left(first.fitted)
-
-    def is_noticed(item: Found) -> bool:
-        after = left(item.fitted)
-        if samples is None:
-            return takes_most(before, after)
-        above_noise = first.fitted.cost - 0.5 * samples
-        return taken(before, after) > NOTICED or first.fitted.cost - item.fitted.cost > NOTICED * above_noise
-
-    best = min(together, key=lambda item: item.fitted.cost)
-    return best if is_noticed(best) else min(filter(is_noticed, together), key=lambda item: left(item.fitted), default=None)
+def _is_noticed(pair: Found, first: Found, samples: int) -> bool:
+    """Whether a pair takes enough of what a first cause leaves that leaves much; samples : fitted ones, noise alone costs half of them."""
+    gained = first.fitted.cost - pair.fitted.cost
+    return taken(left(first.fitted), left(pair.fitted)) > NOTICED or gained > NOTICED * (first.fitted.cost - 0.5 * samples)
 
 
 def _elsewhere(

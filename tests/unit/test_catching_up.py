@@ -148,7 +148,7 @@ def test_on_all_samples_the_others_have_to_catch_up_with_the_best_as_it_is_there
 
     def run(fine: Simulator, task: Task) -> Fitted:
         asked.append(task)
-        return dataclasses.replace(near, cost=5000.0, converged=True)
+        return dataclasses.replace(near, cost=5000.0)
 
     monkeypatch.setattr(all_samples, "run_task", run)
     found = [dataclasses.replace(near, cost=cost) for cost in (300.0, 100.0, 200.0)]

@@ -885,7 +885,7 @@ def test_what_little_tells_apart_is_fitted_alike_on_all_samples(
 
     def run(fine: Simulator, task: Task) -> Fitted:
         asked.append(task)
-        return dataclasses.replace(near, hypothesis=task.hypothesis, converged=True)
+        return dataclasses.replace(near, hypothesis=task.hypothesis)
 
     monkeypatch.setattr(all_samples, "run_task", run)
     found = [near, dataclasses.replace(near, cost=110.0), dataclasses.replace(near, cost=140.0, converged=True)]
@@ -906,7 +906,7 @@ def test_the_same_effect_at_another_place_is_fitted_to_its_end(simulator: Simula
 
     def run(fine: Simulator, task: Task) -> Fitted:
         asked.append(task)
-        return dataclasses.replace(near, hypothesis=task.hypothesis, converged=True)
+        return dataclasses.replace(near, hypothesis=task.hypothesis)
 
     monkeypatch.setattr(all_samples, "run_task", run)
 

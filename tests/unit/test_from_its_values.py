@@ -89,9 +89,7 @@ def test_a_fit_that_had_stopped_in_a_hollow_comes_out_of_it(
         [item] = task.hypothesis.added
         asked.append((item.at, round(size_of(task), 6), task.steps))
         if item.at == "motor":
-            if size_of(task) == pytest.approx(0.2):
-                return fitted(plain, coulomb(0.2), "motor", 1500.0)
-            return fitted(plain, coulomb(0.2), "motor", 900.0 if lower else 1600.0, converged=True)
+            return fitted(plain, coulomb(0.2), "motor", 1500.0 if size_of(task) == pytest.approx(0.2) else 900.0 if lower else 1600.0)
         return fitted(plain, coulomb(0.3), "load", 1000.0 if len(asked) > 2 else 1200.0, converged=len(asked) > 2)
 
     monkeypatch.setattr(all_samples, "run_task", run)
@@ -104,35 +102,6 @@ def test_a_fit_that_had_stopped_in_a_hollow_comes_out_of_it(
     assert load is not None
     assert (motor.cost, load.cost) == (900.0 if lower else 1500.0, 1000.0)
     assert asked[4:] == ([("load", 0.2, LONG)] if lower else [])  # beside a better motor the load is asked again too
-
-
-@pytest.mark.parametrize(
-    ("leaves", "after", "rounds"),
-    [
-        (1.2, 4, 3),  # it still comes down: not for ever
-        (1.2, 2, 2),
-        (1.01, 4, 0),  # next to nothing is left
-    ],
-)
-def test_the_best_fit_goes_on_to_its_end_where_it_leaves_something(
-    simulator: Simulator, plain: Fitted, monkeypatch: pytest.MonkeyPatch, leaves: float, after: int, rounds: int
-) -> None:
-    patient: list[bool] = []
-
-    def run(fine: Simulator, task: Task) -> Fitted:
-        if not task.hypothesis.added:
-            return plain
-        patient.append(task.patient)
-        return fitted(plain, coulomb(0.2), "motor", 500.0 - len(patient), chi_fit=leaves, converged=sum(patient) >= after)
-
-    monkeypatch.setattr(all_samples, "run_task", run)
-    found = [fitted(plain, coulomb(0.2), "motor", 100.0)]
-    with Team(1) as team:
-        last = on_all_samples(team, simulator, dataclasses.replace(plain, chi_fit=90.0), found, NOT_LOOKED, lambda done, total: None)
-    assert patient == [False] + [True] * rounds
-    [best] = last.others
-    assert best is not None
-    assert best.cost == 500.0 - len(patient)
 
 
 @pytest.mark.parametrize(
