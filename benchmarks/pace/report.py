@@ -21,13 +21,12 @@ def report(numbers: Mapping[str, Any]) -> str:
         + ", ".join(f"{1e3 * step:.4g} ms in {name!r}" for name, step in steps.items())
         + f". A batch takes {np.median(shares):.2f} of the time in the median ({min(shares):.2f} to {max(shares):.2f}).",
         "",
-        "| cause | law | place | left, line as it is | same point | fitted again | at their end | moved | line as it is [ms]"
-        " | at the pace [ms] | share |",
+        "| cause | law | place | left, line as it is | same point at the pace | fitted on, line as it is | fitted on at the pace | apart"
+        " | line as it is [ms] | at the pace [ms] | share |",
         "|---|---|---|---|---|---|---|---|---|---|---|",
         *(
-            f"| {row['cause']} | {row['law']} | {row['place']} | {row['exact']:.4f} | {row['quick']:.4f} | {row['refitted']:.4f}"
-            f" | {'yes' if row['ended'] else 'no'}"
-            f" | {row['moved']:.2f} | {1e3 * row['exact_s']:.1f} | {1e3 * row['quick_s']:.1f} | {share:.2f} |"
+            f"| {row['cause']} | {row['law']} | {row['place']} | {row['exact']:.4f} | {row['quick']:.4f} | {row['on']:.4f}"
+            f" | {row['refitted']:.4f} | {row['moved']:.2f} | {1e3 * row['exact_s']:.1f} | {1e3 * row['quick_s']:.1f} | {share:.2f} |"
             for row, share in zip(rows, shares, strict=True)
         ),
     ]

@@ -39,9 +39,9 @@ AT_ONCE, APART = 8, 0.01
 
 def study(*, quick: bool, repeats: int) -> dict[str, Any]:
     """Rows: case, cause, law, place, steps [s] and those of the line as it is, slowed (number of vibrations);
-    exact, quick, refitted: mean square of the law fitted with the line as it is, of the same point at the pace, and of the fit at the pace;
-    ended: whether both fits had come to their end;
-    moved: largest move of a nominal parameter between both fits in its standard deviations after the fit;
+    exact, quick: mean square of the law fitted with the line as it is, and of the same point at the pace;
+    on, refitted: of the fit that goes on from there with the line as it is, and at the pace;
+    moved: largest distance of a nominal parameter between these two in its standard deviations after the fit;
     exact_s, quick_s: CPU of a batch."""
     rows: list[dict[str, Any]] = []
     with tempfile.TemporaryDirectory() as folder:
@@ -51,7 +51,7 @@ def study(*, quick: bool, repeats: int) -> dict[str, Any]:
             quickly = Simulator(exact.trials, pace.steps, EVERY, slowed=pace.slowed, shortest=pace.shortest)
             fitted = fit(exact, problem.look.hypothesis, problem.look.z, steps=CONVERGED, share=FINE)
             [same] = quickly.residuals(fitted.hypothesis, [fitted.z])
-            again = fit(quickly, fitted.hypothesis, fitted.z, steps=CONVERGED, share=FINE)
+            on, again = (fit(item, fitted.hypothesis, fitted.z, steps=CONVERGED, share=FINE) for item in (exact, quickly))
             rows.append(
                 {
                     "case": problem.case,
@@ -62,8 +62,8 @@ def study(*, quick: bool, repeats: int) -> dict[str, Any]:
                     "exact": fitted.chi_fit,
                     "quick": float("inf") if same is None else chi_square(same, quickly.fit),
                     "refitted": again.chi_fit,
-                    "ended": fitted.converged and again.converged,
-                    "moved": _moved(fitted, again),
+                    "on": on.chi_fit,
+                    "moved": _moved(on, again),
                     **_times({"exact_s": exact, "quick_s": quickly}, fitted, repeats),
                 }
             )
