@@ -50,6 +50,12 @@ class About:
         for k, item in enumerate(self.responses):
             item.of.fetch(list(dict.fromkeys(self.shown(name, k) for name in names)))
 
+    def forget(self) -> None:
+        """Let go what can be worked out again: transfers of sources and products of slopes, about 50 MB on a rotor line."""
+        self.likelihood.forget()
+        for item in self.responses:
+            item.of.forget()
+
     def narrowed(self, name: str) -> About:
         """What is asked of a model of which one source is left, in about half of the memory."""
         responses = [replace(item, of=item.of.narrowed(self.shown(name, k))) for k, item in enumerate(self.responses)]

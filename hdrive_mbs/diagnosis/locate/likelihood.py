@@ -112,7 +112,13 @@ class Likelihood:
 
     def __init__(self, given: Sequence[Spectra], at: FloatArray, precision: FloatArray) -> None:
         self.given, self.at, self.precision = tuple(given), at, precision
-        self._energies: dict[int, tuple[FloatArray, FloatArray]] = {}
+        self._last: dict[int, tuple[FloatArray, ComplexArray, FloatArray]] = {}
+        self._grams: dict[int, FloatArray] = {}
+
+    def forget(self) -> None:
+        """Drop what was worked out, to be worked out again when it is asked for."""
+        self._last.clear()
+        self._grams.clear()
 
     @property
     def numbers(self) -> int:
@@ -150,7 +156,7 @@ class Likelihood:
 
     def residuals(self, k: int, z: FloatArray) -> ComplexArray:
         """Spectra of a trial with changed parameters, (windows, bins, columns)."""
-        return np.asarray(self.given[k].values @ np.concatenate([[1.0], z]))
+        return self._at(k, z)[0]
 
     def loosened(self, found: Explained, k: int, times: float) -> float:
         """Gain of the log likelihood if the prior of one parameter is that many times wider, all else linear about a result."""
@@ -168,7 +174,7 @@ class Likelihood:
     def _fit(self, k: int, place: Directions | None, seen: ComplexArray | None, z: FloatArray) -> Fit:
         item = self.given[k]
         columns, widths = item.values.shape[2], item.widths
-        total = self._energy(k, z)
+        _, total = self._at(k, z)
         numbers = columns * widths
         if place is None or seen is None:
             scale = np.maximum(1.0, total / numbers)
@@ -194,30 +200,39 @@ class Likelihood:
         kept = 1.0 - 1.0 / (1.0 + strength[..., None] * place.power)
         return Fit(sums.sum(axis=1), left, np.maximum(1.0, left / numbers), strength, kept)
 
-    def _energy(self, k: int, z: FloatArray) -> FloatArray:
-        """Sum of squares of the residuals of a trial, (windows, bands)."""
-        known = self._energies.get(k)
+    def _at(self, k: int, z: FloatArray) -> tuple[ComplexArray, FloatArray]:
+        """Residuals of a trial, and their sum of squares by (windows, bands); those that were asked for last are kept."""
+        known = self._last.get(k)
         if known is None or not np.array_equal(known[0], z):
             item = self.given[k]
-            squares = np.sum(np.abs(self.residuals(k, z)) ** 2, axis=-1)
-            known = self._energies[k] = (z.copy(), np.add.reduceat(squares, item.bands, axis=1))
-        return known[1]
+            residuals = np.asarray(item.values @ np.concatenate([[1.0], z]))
+            residuals.flags.writeable = False
+            energy = np.add.reduceat(np.sum(np.abs(residuals) ** 2, axis=-1), item.bands, axis=1)
+            known = self._last[k] = z.copy(), residuals, energy
+        return known[1:]
 
     def _normal(self, fits: Sequence[Fit], seen: Sequence[ComplexArray | None]) -> tuple[FloatArray, FloatArray]:
         """J^T W J and J^T W r."""
         size = len(self.at) + 1
         total = np.zeros((size, size))
-        for item, fit, own in zip(self.given, fits, seen, strict=True):
-            flat = item.values.reshape(-1, item.values.shape[-1])
-            weight = np.sqrt(np.repeat(1.0 / fit.scale, item.widths, axis=1))
-            each = np.repeat(weight.ravel(), item.values.shape[2])[:, None]
-            for part in (flat.real, flat.imag):
-                weighted = part * each
-                total += weighted.T @ weighted
+        for k, (item, fit, own) in enumerate(zip(self.given, fits, seen, strict=True)):
+            total += np.tensordot(1.0 / fit.scale, self._gram(k), axes=2)
             if own is not None and fit.kept is not None:
-                less = (own * (weight[..., None] * np.sqrt(fit.kept))[..., None]).reshape(-1, size)
+                weight = np.repeat(1.0 / fit.scale, item.widths, axis=1)[..., None] * fit.kept
+                less = (own * np.sqrt(weight)[..., None]).reshape(-1, size)
                 total -= less.real.T @ less.real + less.imag.T @ less.imag
         return total[1:, 1:], total[1:, 0]
+
+    def _gram(self, k: int) -> FloatArray:
+        """Real part of the products of residuals and slopes of a trial, summed over each band, (windows, bands, 1 + parameters, same)."""
+        if k not in self._grams:
+            item, made = self.given[k], []
+            for first, width in zip(item.bands, item.widths, strict=True):
+                own = item.values[:, first : first + width].astype(complex).reshape(len(item.values), -1, item.values.shape[-1])
+                parts = np.concatenate([own.real, own.imag], axis=1)
+                made.append(np.swapaxes(parts, 1, 2) @ parts)
+            self._grams[k] = np.stack(made, axis=1)
+        return self._grams[k]
 
 
 def _growth(curvature: FloatArray, precision: FloatArray) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -15,20 +15,18 @@ from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.locate.about import About, linearised
 from hdrive_mbs.diagnosis.locate.latent_force import LatentForce, TurnedForce, by_direction, latent_force, most_probable
 from hdrive_mbs.diagnosis.locate.likelihood import Explained, Likelihood, directions
+from hdrive_mbs.diagnosis.locate.loosened import loosened
 from hdrive_mbs.diagnosis.locate.motion import KnownForce
 from hdrive_mbs.diagnosis.locate.response import KEPT
 from hdrive_mbs.diagnosis.locate.spectra import joined
 from hdrive_mbs.diagnosis.result import NOWHERE, Place
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.turning import reference_shaft
-from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.errors import AnalysisError, unknown_place
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-LOOSE = 10.0
-"""Times its prior standard deviation that a parameter of a place may be off."""
 BLOCKS = 12
 """Stretches of a record that are taken as independent when two places are compared."""
 CLOSE, ALIKE = 3.0, 0.8
@@ -114,7 +112,7 @@ class Localiser:
 
     def _all(self, first: About) -> list[_Tried]:
         """All places, best first;  first : about the motion that the localisation began with."""
-        loose = self._loosened()
+        loose = loosened(self._about, self._hypothesis, self._nowhere)
         tried = self._tried_about(self._about, self._nowhere)
         if self._about.turning:
             # without a force parameters may have gone where they stand in for it: begin also where they were
@@ -157,18 +155,12 @@ class Localiser:
         contenders = [k for k, item in enumerate(tried[:CLOSER]) if item.gain > max(0.0, CONTENDS * tried[0].gain)]
         if len(contenders) < 2 or tried[0].found.left < UNCLEAR * self._about.likelihood.numbers:
             return tried
+        for about in {id(item.about): item.about for item in tried}.values():
+            about.forget()  # models linearised anew need the memory more
         now, best = {k: tried[k] for k in contenders}, dict[int, _Tried]()
         for time in range(TIMES):
-            for k, item in list(now.items()):
-                again = self._again(item)
-                if again is None:
-                    del now[k]
-                    continue
-                now[k] = again
-                if k not in best or now[k].gain > best[k].gain:
-                    best[k] = now[k]
-                if time == TIMES - 1:
-                    now[k] = best[k]  # nothing goes on from the last: what a model linearised anew holds (75 MB of a drive) is let go
+            for k in list(now):
+                now |= self._closest(k, now.pop(k), best, is_last=time == TIMES - 1)
             top = max((item.gain for item in best.values()), default=0.0)
             now = {k: item for k, item in now.items() if best[k].gain > CONTENDS * top}
             if len(now) < 2:
@@ -179,6 +171,18 @@ class Localiser:
         lost = min(1.0, max(item.gain for item in best.values()) / tried[0].gain)
         made = [best.get(k, replace(item, gain=item.gain * lost) if item.gain > 0.0 else item) for k, item in enumerate(tried)]
         return sorted(made, key=lambda item: -item.gain)
+
+    def _closest(self, k: int, item: _Tried, best: dict[int, _Tried], is_last: bool) -> dict[int, _Tried]:
+        """What a place goes on from, none where it cannot be run; ``best`` takes it if it is better.
+
+        Nothing goes on from the last: what a model linearised anew holds (75 MB) is let go.
+        """
+        again = self._again(item)
+        if again is None:
+            return {}
+        if k not in best or again.gain > best[k].gain:
+            best[k] = again
+        return {k: best[k] if is_last else again}
 
     def _again(self, item: _Tried) -> _Tried | None:
         """A place about the motion with its force; None where that cannot be run."""
@@ -220,22 +224,6 @@ class Localiser:
                 there.spectra[k].values[..., 0] += (there.responses[k].of[there.shown(item.name, k)] @ force[..., None])[..., 0]
         before = there.likelihood
         return replace(there, likelihood=Likelihood(there.spectra, before.at, before.precision))
-
-    def _loosened(self) -> dict[str, tuple[float, str]]:
-        """Place -> gain of letting the one of its parameters loose that gains most, and its name, any of all being as probable.
-
-        Of 15 right parameters one lies beyond 3 standard deviations every 25th time.
-        """
-        found: dict[str, tuple[float, str]] = {}
-        many = math.log(max(self._hypothesis.nominal_size, 1))
-        known = {source.at for item in self._about.responses for source in item.sources.values()}
-        for k, unknown in enumerate(self._hypothesis.unknowns[: self._hypothesis.nominal_size]):
-            assert isinstance(unknown, Factor)
-            if unknown.wide == 1.0:
-                gain = self._about.likelihood.loosened(self._nowhere, k, LOOSE) - many
-                for owner in {_owner(path, known) for path in unknown.nominal}:
-                    found[owner] = max((gain, unknown.name), found.get(owner, (-math.inf, "")))
-        return found
 
     @cached_property
     def _odds(self) -> dict[str, float]:
@@ -375,12 +363,6 @@ def _one_a_place(tried: Sequence[_Tried]) -> list[_Tried]:
     for item in sorted(tried, key=lambda item: -item.gain):
         found.setdefault(item.at, item)
     return list(found.values())
-
-
-def _owner(path: str, places: Collection[str]) -> str:
-    """The place that a parameter belongs to: the part of its path that is one, or the part of the scene."""
-    parts = path.split(".")
-    return next((at for k in range(len(parts), 0, -1) if (at := ".".join(parts[:k])) in places), parts[0])
 
 
 def _blocks(values: FloatArray) -> FloatArray:

@@ -103,6 +103,11 @@ class OfSources(Mapping[str, ComplexArray]):
         while len(self._kept) > KEPT:
             self._kept.pop(next(iter(self._kept)))
 
+    def forget(self) -> None:
+        """Drop what is kept, to be worked out again when it is asked for."""
+        if self._worked is not None:
+            self._kept.clear()
+
     def narrowed(self, name: str) -> OfSources:
         """One source alone, without anything with which others are worked out."""
         made = copy.copy(self)

@@ -29,7 +29,7 @@ UNKNOWN = 1e3
 """Standard deviation of an unknown offset, in those of the noise."""
 NARROW = 8
 """Most bins of a band for rotors: their forces have orders of the speed."""
-TOGETHER = 10
+TOGETHER = 15
 """Rows whose spectra are worked out together: the fewer the less memory, the more the quicker an observer goes through them."""
 LATTICES = 4
 """Positions of the steps of a rounded column at which its error is worked out."""
@@ -196,11 +196,14 @@ def _against(observer: Observer, whitener: ComplexArray, quiet: FloatArray, ever
     points = np.arange(-NEAR, FINER * (bins - 1) + NEAR + 1)
     transfer = observer.noise_transfer(points * step)
     size = 1.0 / np.abs(whitener[np.abs(points)])
+    transfer *= size[None, :, None, :]
     total = np.zeros((windows, bins, columns, columns), complex)
-    for k in range(columns):
-        part = transfer[..., k] * size[None, :, None, k]
-        power = of_windows(averaged(part[..., :, None] * part[..., None, :].conj(), bins), windows)
-        total += power / quiet[:, :, k, None, None] ** 2
+    white = np.all(quiet == 1.0, axis=(0, 1))
+    alike = [np.flatnonzero(white), *np.flatnonzero(~white)[:, None]]
+    for some in filter(len, alike):
+        part = transfer[..., some]
+        power = of_windows(averaged(part @ np.swapaxes(part.conj(), 2, 3), bins), windows)
+        total += power / quiet[:, :, some[:1], None] ** 2
     return np.asarray(np.linalg.inv(np.linalg.cholesky(total)))
 
 
