@@ -72,18 +72,19 @@ def on_all_samples(
     order = sorted(range(len(found)), key=lambda k: found[k].cost)
     best, rest = order[:1], order[1:]
     whole = 2 + len(found)
-    work: list[Work] = [
-        partial(as_given, nominal=null.hypothesis),
-        partial(run_task, task=_of_nominal(null)),
-        *(partial(run_task, task=tasks[k]) for k in best),
-    ]
-    nominal, refitted, *leading = team.map(_done, fine, work, lambda done, total: said(done, whole))
-    if nominal is None or refitted is None:
+    work: list[Work] = [partial(as_given, nominal=null.hypothesis), *(partial(run_task, task=tasks[k]) for k in best)]
+    again = team.begin(_done, fine, partial(run_task, task=_of_nominal(null)))  # beside all the others, which do not ask for it
+    nominal, *leading = team.map(_done, fine, work, lambda done, total: said(done, whole))
+    if nominal is None:
         raise AnalysisError(CANNOT_RUN)
     others = dict(zip(best, leading, strict=True))
     beat = next((rivalling(item) for item in leading if item is not None), None)
     work = [partial(run_task, task=replace(tasks[k], beat=beat)) for k in rest]
-    others |= dict(zip(rest, team.map(_done, fine, work, lambda done, total: said(2 + len(best) + done, whole)), strict=True))
+    others |= dict(zip(rest, team.map(_done, fine, work, lambda done, total: said(1 + len(best) + done, whole)), strict=True))
+    refitted = team.answer(again)
+    said(whole, whole)
+    if refitted is None:
+        raise AnalysisError(CANNOT_RUN)
     others |= _from_reserve(team, fine, others, dict(enumerate(reserve, len(found))))
     others |= _levelled(team, fine, others, {k for k, task in enumerate(tasks) if task.steps < LONG})
     if place is None:

@@ -100,9 +100,11 @@ def candidates(scene: Scene, kinds: Iterable[type[Effect]] | type[Effect] | None
         for place in _places(kind, network):
             name = _free_name(scene, kind)
             options = _options(kind)
-            starts = tuple(item for effect in _made(kind, options) if _fits(scene, item := Added(effect, place, name)))
+            tried = [Added(effect, place, name) for effect in _made(kind, options)]
+            starts = tuple(item for item in tried if _fits(scene, item))
             if starts:
-                first = tuple(item for effect in _made(kind, _few(kind, options)) if _fits(scene, item := Added(effect, place, name)))
+                few = [Added(effect, place, name) for effect in _made(kind, _few(kind, options))]
+                first = tuple(item for item in few if item in starts or (item not in tried and _fits(scene, item)))
                 found.append(Candidate(kind, place, starts, first or starts[:1]))
     return found
 
