@@ -892,7 +892,7 @@ def test_what_little_tells_apart_is_fitted_alike_on_all_samples(
     far = dataclasses.replace(near, cost=1e5, chi_fit=90.0)
     with Team(1) as team:
         last = on_all_samples(team, simulator, far, found, NOT_LOOKED, lambda done, total: None)
-    given, _, best, rival, other = asked
+    given, best, rival, other, _ = asked
     assert given.steps == 0
     assert (best.steps, best.hops) == (rival.steps, rival.hops)
     assert other.steps < rival.steps
@@ -924,7 +924,7 @@ def test_the_same_effect_at_another_place_is_fitted_to_its_end(simulator: Simula
     ]
     with Team(1) as team:
         on_all_samples(team, simulator, dataclasses.replace(near, cost=1e5, chi_fit=90.0), found, NOT_LOOKED, lambda done, total: None)
-    best, elsewhere, *others = ((task.steps, task.hops) for task in asked[2:])
+    best, elsewhere, *others = ((task.steps, task.hops) for task in asked[1:-1])
     assert elsewhere == best
     assert all(steps < best[0] and hops == 0 for steps, hops in others)
 
