@@ -81,12 +81,12 @@ def on_all_samples(
     beat = next((rivalling(item) for item in leading if item is not None), None)
     work = [partial(run_task, task=replace(tasks[k], beat=beat)) for k in rest]
     others |= dict(zip(rest, team.map(_done, fine, work, lambda done, total: said(1 + len(best) + done, whole)), strict=True))
+    others |= _from_reserve(team, fine, others, dict(enumerate(reserve, len(found))))
+    others |= _levelled(team, fine, others, {k for k, task in enumerate(tasks) if task.steps < LONG})
     refitted = team.answer(again)
     said(whole, whole)
     if refitted is None:
         raise AnalysisError(CANNOT_RUN)
-    others |= _from_reserve(team, fine, others, dict(enumerate(reserve, len(found))))
-    others |= _levelled(team, fine, others, {k for k, task in enumerate(tasks) if task.steps < LONG})
     if place is None:
         team.dismiss()  # it is the last that they do, and a localisation needs the memory
         place = located(fine, refitted)

@@ -100,11 +100,11 @@ def candidates(scene: Scene, kinds: Iterable[type[Effect]] | type[Effect] | None
         for place in _places(kind, network):
             name = _free_name(scene, kind)
             options = _options(kind)
-            tried = [Added(effect, place, name) for effect in _made(kind, options)]
-            starts = tuple(item for item in tried if _fits(scene, item))
+            known: dict[str, bool] = {}
+            starts = tuple(item for effect in _made(kind, options) if _fits(scene, item := Added(effect, place, name), known))
             if starts:
-                few = [Added(effect, place, name) for effect in _made(kind, _few(kind, options))]
-                first = tuple(item for item in few if item in starts or (item not in tried and _fits(scene, item)))
+                few = _made(kind, _few(kind, options))  # most of them are among the starts
+                first = tuple(item for effect in few if _fits(scene, item := Added(effect, place, name), known))
                 found.append(Candidate(kind, place, starts, first or starts[:1]))
     return found
 
@@ -127,8 +127,15 @@ def _places(kind: type[Effect], network: Network) -> tuple[str, ...]:
         raise ParameterError(f"{kind.__name__}.places raised {type(error).__name__}: {error}. Mend it, or leave the class out.") from error
 
 
-def _fits(scene: Scene, item: Added) -> bool:
-    """Whether an effect can be put there at all."""
+def _fits(scene: Scene, item: Added, known: dict[str, bool]) -> bool:
+    """Whether an effect can be put there at all;  known : what is known of others at this place, by their text, which takes this one up."""
+    key = repr(item.effect)
+    if key not in known:
+        known[key] = _goes_there(scene, item)
+    return known[key]
+
+
+def _goes_there(scene: Scene, item: Added) -> bool:
     try:
         scene.with_effect(item.effect, at=item.at)
     except HdriveError:

@@ -51,7 +51,7 @@ class About:
             item.of.fetch(list(dict.fromkeys(self.shown(name, k) for name in names)))
 
     def forget(self) -> None:
-        """Let go what can be worked out again: transfers of sources and products of slopes, about 50 MB on a rotor line."""
+        """Let go what can be worked out again: transfers of sources, residuals and products of slopes; 50 MB of the rotor bench."""
         self.likelihood.forget()
         for item in self.responses:
             item.of.forget()

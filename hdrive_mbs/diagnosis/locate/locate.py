@@ -118,6 +118,7 @@ class Localiser:
             # without a force parameters may have gone where they stand in for it: begin also where they were
             tried += self._tried_about(first, first.likelihood.of(None, np.zeros(len(first.likelihood.at)), rounds=0))
             tried = _one_a_place(tried)
+            first.forget()
         tried = self._closer(tried)
         for k, item in enumerate(tried):
             gain, parameter = loose.get(item.at, (-math.inf, ""))
@@ -155,8 +156,7 @@ class Localiser:
         contenders = [k for k, item in enumerate(tried[:CLOSER]) if item.gain > max(0.0, CONTENDS * tried[0].gain)]
         if len(contenders) < 2 or tried[0].found.left < UNCLEAR * self._about.likelihood.numbers:
             return tried
-        for about in {id(item.about): item.about for item in tried}.values():
-            about.forget()  # models linearised anew need the memory more
+        self._about.forget()  # models linearised anew need the memory more
         now, best = {k: tried[k] for k in contenders}, dict[int, _Tried]()
         for time in range(TIMES):
             for k in list(now):
@@ -175,7 +175,7 @@ class Localiser:
     def _closest(self, k: int, item: _Tried, best: dict[int, _Tried], is_last: bool) -> dict[int, _Tried]:
         """What a place goes on from, none where it cannot be run; ``best`` takes it if it is better.
 
-        Nothing goes on from the last: what a model linearised anew holds (75 MB) is let go.
+        Nothing goes on from the last: what a model linearised anew holds (75 MB of either bench) is let go.
         """
         again = self._again(item)
         if again is None:

@@ -23,7 +23,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import expm
 
-from hdrive_mbs.diagnosis.locate.linear import Linear, Transfers
 from hdrive_mbs.errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
@@ -106,17 +105,7 @@ class Observer:
         """Logarithm by which the slowest error grows in a sample, the largest of all stretches; inf where it is no number."""
         if not np.isfinite(self.kept).all():
             return math.inf
-        return math.log(self._radius)
-
-    @property
-    def memory(self) -> float:
-        """Samples in which the slowest error falls to 1/e, the longest of all stretches."""
-        return -1.0 / math.log(min(self._radius, 1.0 - 1e-9))
-
-    @property
-    def _radius(self) -> float:
-        """Factor by which the slowest error changes in a sample, the largest of all stretches."""
-        return max(float(np.max(np.abs(values))) for values, _, _ in self._modes)
+        return math.log(max(float(np.max(np.abs(np.linalg.eigvals(kept)))) for kept in self.kept))
 
 
 def _strided(kept: FloatArray, gain: FloatArray, read: FloatArray, count: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -143,11 +132,10 @@ def observer(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray, noise: 
     kept, gains = [], []
     covariance = None
     scale = noise.copy()
-    through_time = np.array([expm(one * every) for one in a])
-    driven = through_time @ b * every
-    steady = _steady(Linear(through_time, driven, c, d))
-    for k, (free, moved) in enumerate(zip(through_time, driven, strict=True)):
-        shown = np.abs(steady[k]) / scale[:, None]
+    for k in range(len(a)):
+        free = expm(a[k] * every)
+        moved = free @ b[k] * every
+        shown = np.abs(_steady(free, moved, c[k], d[k], every)) / scale[:, None]
         most = np.max(shown, axis=(0, 1))
         size = np.where(most > HIDDEN * np.max(most, initial=0.0), np.sqrt(STRONG) / np.maximum(most, 1e-300), 0.0)
         push, through = moved * size, d[k] * size
@@ -171,13 +159,11 @@ def observer(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray, noise: 
     return found
 
 
-def _steady(sampled: Linear) -> ComplexArray:
-    """Transfers at a few frequencies below a quarter of the sample rate, shape (stretches, frequencies, columns, forces).
-
-    sampled : A_d, and so on
-    """
+def _steady(free: FloatArray, moved: FloatArray, c: FloatArray, d: FloatArray, every: float) -> ComplexArray:
+    """Transfers at a few frequencies below a quarter of the sample rate, shape (frequencies, columns, forces)."""
     z = np.exp(1j * np.geomspace(0.01, 0.5 * np.pi, 40))
-    return Transfers(sampled, z).of(range(sampled.b.shape[2]))
+    system = z[:, None, None] * np.eye(len(free)) - free
+    return np.asarray(c @ np.linalg.solve(system, np.broadcast_to(moved, (len(z), *moved.shape)).astype(complex)) + d)
 
 
 def averaged(power: ComplexArray, bins: int) -> ComplexArray:

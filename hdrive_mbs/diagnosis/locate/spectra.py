@@ -201,9 +201,9 @@ def _against(observer: Observer, whitener: ComplexArray, quiet: FloatArray, ever
     white = np.all(quiet == 1.0, axis=(0, 1))
     alike = [np.flatnonzero(white), *np.flatnonzero(~white)[:, None]]
     for some in filter(len, alike):
-        part = transfer[..., some]
-        power = of_windows(averaged(part @ np.swapaxes(part.conj(), 2, 3), bins), windows)
-        total += power / quiet[:, :, some[:1], None] ** 2
+        parts = (transfer[k : k + 1, ..., some] for k in range(len(transfer)))  # those of all stretches at once are 30 MB on a rotor line
+        power = np.concatenate([averaged(part @ np.swapaxes(part.conj(), 2, 3), bins) for part in parts])
+        total += of_windows(power, windows) / quiet[:, :, some[:1], None] ** 2
     return np.asarray(np.linalg.inv(np.linalg.cholesky(total)))
 
 
