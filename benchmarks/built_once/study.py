@@ -13,8 +13,8 @@ from benchmarks.machine import machine as about
 from hdrive_mbs.compiled.idle_coordinates import without_idle
 from hdrive_mbs.compiled.line import CompiledLine, run_many
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.templates import PAYS, Templates
 from hdrive_mbs.network.network import Network
 from models import drive_bench, rotor_bench

@@ -17,10 +17,10 @@ from benchmarks.withheld.make import make_set
 from benchmarks.withheld.methods import bench_of, records_of
 from hdrive_mbs.diagnosis import differences
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import EVERY, factors_of
 from hdrive_mbs.diagnosis.differences import jacobian
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.ground import screen_from
+from hdrive_mbs.diagnosis.prepared import EVERY, factors_of
 from hdrive_mbs.diagnosis.screening import Look
 from hdrive_mbs.diagnosis.search import fit_nominal
 from hdrive_mbs.diagnosis.simulator import Simulator

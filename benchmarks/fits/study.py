@@ -21,10 +21,10 @@ from benchmarks.withheld.names import names_of
 from hdrive_mbs.diagnosis import differences
 from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.curved import Valley
-from hdrive_mbs.diagnosis.diagnose import EVERY, factors_of
 from hdrive_mbs.diagnosis.differences import jacobian
 from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.prepared import EVERY, factors_of
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.search import fit_nominal
 from hdrive_mbs.diagnosis.simulator import Simulator, chi_square

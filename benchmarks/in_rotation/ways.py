@@ -13,9 +13,9 @@ import hdrive_mbs as hm
 from benchmarks.in_rotation.case import PlainBench, bench
 from hdrive_mbs.compiled.line import CompiledRun, run_many
 from hdrive_mbs.diagnosis.bench import Bench
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 
 FloatArray = npt.NDArray[np.float64]

@@ -13,9 +13,9 @@ import numpy.typing as npt
 from benchmarks.fits.study import SEED, problems
 from benchmarks.machine import machine as about
 from benchmarks.withheld.methods import bench_of
-from hdrive_mbs.diagnosis.diagnose import EVERY, factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.pace import Pace, pace_of
+from hdrive_mbs.diagnosis.prepared import EVERY, factors_of
 from hdrive_mbs.diagnosis.simulator import Simulator, chi_square
 from hdrive_mbs.diagnosis.tasks import CONVERGED, FINE
 

@@ -23,9 +23,9 @@ from benchmarks.real.preparing import low_pass, rates
 from benchmarks.real.rounds import Round
 from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.search import fit_nominal
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.records.measurement import Measurement

@@ -13,10 +13,10 @@ from benchmarks.withheld.finding import Claimed, Finding
 from benchmarks.withheld.methods import Solved, bench_of, records_of
 from benchmarks.withheld.names import Label, names_of
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import EVERY, factors_of
 from hdrive_mbs.diagnosis.evidence import log_evidence
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.prepared import EVERY, factors_of
 from hdrive_mbs.diagnosis.screening import Look, Screen
 from hdrive_mbs.diagnosis.simulator import Simulator, chi_square
 from hdrive_mbs.diagnosis.step import suitable_step

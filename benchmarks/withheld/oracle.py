@@ -19,9 +19,9 @@ from benchmarks.withheld.names import Label, names_of
 from benchmarks.withheld.truths import read_truths
 from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.diagnosis.candidates import Candidate, candidates
-from hdrive_mbs.diagnosis.diagnose import EVERY, factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit, jacobian
 from hdrive_mbs.diagnosis.hypothesis import FloatArray
+from hdrive_mbs.diagnosis.prepared import EVERY, factors_of
 from hdrive_mbs.diagnosis.screening import Screen
 from hdrive_mbs.diagnosis.search import fit_nominal
 from hdrive_mbs.diagnosis.simulator import Simulator

@@ -17,37 +17,26 @@ import numpy.typing as npt
 from hdrive_mbs.compiled.let_go import let_go
 from hdrive_mbs.compiled.threads import allowed
 from hdrive_mbs.diagnosis.alternatives import Planned, fits_of, records_to_take
-from hdrive_mbs.diagnosis.assumed_bench import assumed_bench
 from hdrive_mbs.diagnosis.bench import Bench
-from hdrive_mbs.diagnosis.candidate_checks import check_candidates, left_out
-from hdrive_mbs.diagnosis.candidates import candidates as all_candidates
-from hdrive_mbs.diagnosis.column_names import as_the_bench_names_them
+from hdrive_mbs.diagnosis.candidate_checks import left_out
 from hdrive_mbs.diagnosis.deadline import Deadline
-from hdrive_mbs.diagnosis.drive_scale_checks import drives_scaled
 from hdrive_mbs.diagnosis.driven import driven_scenes
 from hdrive_mbs.diagnosis.estimates import effect_estimates, nominal_estimates
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.gap import gaps
 from hdrive_mbs.diagnosis.gather import Evidence, gather
-from hdrive_mbs.diagnosis.input_checks import check_records, check_trials, not_compared, not_driven
 from hdrive_mbs.diagnosis.journal import Journal
-from hdrive_mbs.diagnosis.pace import Pace, pace_of
 from hdrive_mbs.diagnosis.pictures import pictures_of
-from hdrive_mbs.diagnosis.record_words import record_words
+from hdrive_mbs.diagnosis.prepared import prepare
 from hdrive_mbs.diagnosis.refusals import refused_words
 from hdrive_mbs.diagnosis.result import Cause, Diagnosis
 from hdrive_mbs.diagnosis.ringing import ringing_words
-from hdrive_mbs.diagnosis.scale_checks import looks_scaled
-from hdrive_mbs.diagnosis.simulator import Simulator
-from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.diagnosis.suspects import Label
 from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.diagnosis.team import Team
 from hdrive_mbs.diagnosis.unevenness import patch_words, patches, unevenness
-from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.verdict import NONE, UNKNOWN, Claim, judge, left
 from hdrive_mbs.diagnosis.verify import Verified, verified
-from hdrive_mbs.diagnosis.whole_records import split_up
 from hdrive_mbs.effects.effect import Effect
 from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.freed_memory import give_back
@@ -57,9 +46,6 @@ from hdrive_mbs.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
 Report = Callable[[str, int, int], None]
-
-EVERY = 4
-"""Samples from one to the next that the search compares; the last fits take all."""
 
 
 def diagnose(
@@ -101,81 +87,44 @@ def diagnose(
     started = time.monotonic()
     deadline = Deadline(search_seconds)
     chosen = _records(records)
-    known = bench if isinstance(bench, Bench) else assumed_bench(bench, chosen)
-    chosen = tuple(as_the_bench_names_them(known, record) for record in chosen)
-    check_records(known, chosen)
-    trials_of = {record.name: known.trials(record) for record in chosen}
     aside = (held_out,) if isinstance(held_out, str) else tuple(held_out)
-    searched, trials = split_up(trials_of, known.searched, aside)
-    factors = factors_of(known)
-    tried = all_candidates(trials[0].scene, candidates)
-    if step is None:
-        step = suitable_step(trials, factors)
-        pace = pace_of(searched, factors, step)
-    else:
-        pace = Pace((step,) * len(searched))
-    coarse, fine = Simulator(searched, pace.steps, EVERY, slowed=pace.slowed, shortest=pace.shortest), Simulator(trials, step)
-    check_trials(coarse, factors)
-    if aside:
-        check_trials(Simulator([trial for trial in trials if trial.held_out.all()], step, EVERY), factors, fitted=False)
-    changed, reported = record_words(chosen)
-    warnings = (
-        *changed,
-        *not_driven(known, chosen, coarse, factors, bare=not isinstance(bench, Bench)),
-        *not_compared(known, chosen),
-        *looks_scaled(coarse, factors),
-        *drives_scaled(known, chosen, coarse, factors),
-    )
-    check_candidates(tried, coarse, factors)
-    journal = None
-    if folder is not None:
-        steps = step, pace.steps, len(pace.slowed)
-        inputs = {"records": chosen, "bench": known, "candidates": tried, "trials": (trials, factors, known.groups, *steps, EVERY)}
-        journal = Journal(folder, inputs)
     others_run = (workers or 1) > 1
-    if others_run:
-        coarse.forget()
-        let_go()  # what finding a step took, before processes begin
-    give_back()
-    with Team(workers or 1, journal, deadline) as team:
-        evidence = gather(coarse, fine, factors, known.groups, tried, team, report)
+    with Team(workers or 1, deadline=deadline) as team:
+        team.stand_by()  # while the records are checked
+        given = prepare(bench, chosen, candidates, step, aside)
+        team.journal = None if folder is None else Journal(folder, given.inputs)
+        if others_run:
+            given.coarse.forget()
+            let_go()  # what finding a step took, which the search does not need here
+        give_back()
+        evidence = gather(given.coarse, given.fine, given.factors, given.bench.groups, given.candidates, team, report)
         claim, best = _concluded(evidence)
         checked = _on_the_engine(team, evidence, best, report)
-        planned = records_to_take(known, chosen, evidence, claim, team, report)
+        planned = records_to_take(given.bench, given.records, evidence, claim, team, report)
     if watch is not None:
         watch(evidence)
     with allowed(lambda: workers or 1):  # its processes have ended
-        found = answer(known, chosen, evidence, claim, best, checked, planned, started=started, pictures=pictures)
+        found = answer(given.bench, given.records, evidence, claim, best, checked, planned, started=started, pictures=pictures)
     notes = (
-        *left_out(tried, evidence.single, step),
-        *ringing_words(trials),
+        *left_out(given.candidates, evidence.single, given.step),
+        *ringing_words(given.fine.trials),
         *team.lost,
-        *(() if journal is None else journal.said),
-        *reported,
+        *(() if team.journal is None else team.journal.said),
+        *given.notes,
     )
-    driven = {name: item.path for name, item in known.inputs.items()}
-    files = {record.name: {"source": record.source, "sha256": record.sha256} for record in chosen if record.sha256}
-    settings = {
-        "step": step,
-        "steps_of_search": dict(zip([trial.name for trial in searched], pace.steps, strict=True)),
-        "slowed_in_search": len(pace.slowed),
-        "every": EVERY,
-        "candidates": [f"{item.kind.__name__}@{item.at}" for item in tried],
-        "searched": [name for name, own in trials_of.items() if any(trial in searched for trial in own)],
-        "held_out": list(aside),
-    }
-    del evidence, coarse, fine, trials, trials_of, searched
+    found = dataclasses.replace(
+        found,
+        notes=(*found.notes, *notes),
+        warnings=(*found.warnings, *given.warnings, *deadline.said(), *refused_words(team.refused)),
+        inputs={name: item.path for name, item in given.bench.inputs.items()},
+        files={item.name: {"source": item.source, "sha256": item.sha256} for item in given.records if item.sha256},
+        settings=given.settings,
+    )
+    del evidence, given
     if others_run:
         let_go()
     give_back()
-    return dataclasses.replace(
-        found,
-        notes=(*found.notes, *notes),
-        warnings=(*found.warnings, *warnings, *deadline.said(), *refused_words(team.refused)),
-        inputs=driven,
-        files=files,
-        settings=settings,
-    )
+    return found
 
 
 def _records(records: Records | Sequence[Record] | Record) -> tuple[Record, ...]:
@@ -188,15 +137,6 @@ def _records(records: Records | Sequence[Record] | Record) -> tuple[Record, ...]
         record.checked()  # before a bench is made from them
     Records(records=found).checked()  # clocks of one run against each other
     return found
-
-
-def factors_of(bench: Bench) -> tuple[Factor, ...]:
-    """The bench's uncertain parameters as unknowns."""
-    found = []
-    for name, item in bench.knowledge.items():
-        nominal = dict(zip(item.paths, bench.nominal(name), strict=True))
-        found.append(Factor(path=item.paths[0], name=name, nominal=nominal, sigma=item.sigma))
-    return tuple(found)
 
 
 def _concluded(evidence: Evidence) -> tuple[Claim, Fitted]:

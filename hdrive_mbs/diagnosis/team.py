@@ -66,6 +66,11 @@ class Team:
         if self._folder is not None:
             self._folder.cleanup()
 
+    def stand_by(self) -> None:
+        """Begin the processes, if there are to be several, before there is work: they read this package meanwhile."""
+        if self._folder is not None:
+            self._fill()
+
     def dismiss(self, patience: float = PATIENCE) -> None:
         """End the processes, which have no items, and with them what they keep; another map begins new ones."""
         while self._running:

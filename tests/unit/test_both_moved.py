@@ -7,10 +7,10 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.both_moved import both_moved
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.pairs import contenders, moved
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import suspects
 from hdrive_mbs.diagnosis.tasks import Found

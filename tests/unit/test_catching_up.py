@@ -11,11 +11,11 @@ import hdrive_mbs as hm
 from hdrive_mbs.diagnosis import all_samples, tasks
 from hdrive_mbs.diagnosis import fit as fitting
 from hdrive_mbs.diagnosis.all_samples import on_all_samples
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import LONG, Fitted, falls_short, fit, stalls
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.located import Located
 from hdrive_mbs.diagnosis.pairs import swapped
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.scans import fits_from
 from hdrive_mbs.diagnosis.screening import Look
 from hdrive_mbs.diagnosis.simulator import Simulator

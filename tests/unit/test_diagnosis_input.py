@@ -15,11 +15,12 @@ import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.bench import Bench, Input, Uncertain
 from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.column_names import as_the_bench_names_them
-from hdrive_mbs.diagnosis.diagnose import diagnose, factors_of
+from hdrive_mbs.diagnosis.diagnose import diagnose
 from hdrive_mbs.diagnosis.drive_scale_checks import drives_scaled
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.input_checks import check_trials, not_compared, not_driven
 from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.report_text import report_text
 from hdrive_mbs.diagnosis.result import Diagnosis
 from hdrive_mbs.diagnosis.scale_checks import OTHERS, check_scale, looks_scaled

@@ -12,11 +12,11 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.beginnings import ASIDE, begun_at, beside, widths_of
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.locate.motion import motion_of
 from hdrive_mbs.diagnosis.periods import MOST, TIME, TURN, Periods
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import suspects
 from hdrive_mbs.diagnosis.turning import reference_shaft

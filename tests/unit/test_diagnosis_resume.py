@@ -20,13 +20,13 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.compiled import threads
 from hdrive_mbs.diagnosis import gather
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.digest import digest
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.locate.latent_force import LatentForce, TurnedForce
 from hdrive_mbs.diagnosis.located import Located
 from hdrive_mbs.diagnosis.packing import packed, unpacked
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.refusals import refuse, refused_words
 from hdrive_mbs.diagnosis.result import Diagnosis, Place
 from hdrive_mbs.diagnosis.screening import Look, Screen

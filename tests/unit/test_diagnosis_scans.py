@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.robust import Blocks
 from hdrive_mbs.diagnosis.scans import FITTED, POINTS, WIDE, fits_from, scan, worth_a_scan
 from hdrive_mbs.diagnosis.search import search

@@ -17,7 +17,7 @@ from hdrive_mbs.diagnosis.all_samples import Last, on_all_samples
 from hdrive_mbs.diagnosis.at_the_place import at_the_place
 from hdrive_mbs.diagnosis.candidates import Candidate, candidates
 from hdrive_mbs.diagnosis.choosing import beyond, enough, not_begun, passed_over, picked, spread_out
-from hdrive_mbs.diagnosis.diagnose import factors_of, strongest_first
+from hdrive_mbs.diagnosis.diagnose import strongest_first
 from hdrive_mbs.diagnosis.differences import jacobian
 from hdrive_mbs.diagnosis.fit import Fitted, fit, mend
 from hdrive_mbs.diagnosis.from_the_best import bent, elsewhere, other_laws, unfinished
@@ -28,6 +28,7 @@ from hdrive_mbs.diagnosis.lines import Lines
 from hdrive_mbs.diagnosis.located import Located, located
 from hdrive_mbs.diagnosis.normal_equations import STRETCH, normal_equations
 from hdrive_mbs.diagnosis.pairs import alone, contenders, moved
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.result import Cause, Place
 from hdrive_mbs.diagnosis.screening import FAINTEST, Look, Screen, _leading, _promising
 from hdrive_mbs.diagnosis.search import ENOUGH, Depth, Search, _Work, fit_nominal, is_inexact, search

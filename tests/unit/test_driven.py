@@ -13,10 +13,10 @@ from typer.testing import CliRunner
 import hdrive_mbs as hm
 from hdrive_mbs.cli.diagnose import write_improved
 from hdrive_mbs.cli.main import app
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.driven import channels_at_start, driven_scenes
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.improved_words import file_names, improved_words, own_files
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.result import Driven
 from hdrive_mbs.diagnosis.search import fit_nominal
 from hdrive_mbs.diagnosis.simulator import Simulator

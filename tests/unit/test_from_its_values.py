@@ -10,12 +10,12 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis import all_samples
 from hdrive_mbs.diagnosis.all_samples import LAST, LONG, on_all_samples
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.from_its_values import from_its_values
 from hdrive_mbs.diagnosis.gather import in_reserve
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.located import Located
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import Suspect
 from hdrive_mbs.diagnosis.tasks import RIVAL, Found, Task

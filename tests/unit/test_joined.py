@@ -7,10 +7,10 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis import joined as joining
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.joined import joined
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect
 from hdrive_mbs.diagnosis.tasks import Found

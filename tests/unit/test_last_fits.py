@@ -7,10 +7,10 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.all_samples import on_all_samples
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.located import Located
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.team import Team
 from tests.unit.diagnosis_cases import bench, records

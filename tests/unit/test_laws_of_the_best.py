@@ -8,10 +8,10 @@ import numpy as np
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.from_the_best import other_laws, twins
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import Suspect, suspects
 from hdrive_mbs.diagnosis.tasks import Found, Task

@@ -9,9 +9,9 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.from_the_best import NEXT, laws_of_the_next, other_laws
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.suspects import suspects
 from hdrive_mbs.diagnosis.tasks import Found
 from hdrive_mbs.effects.effect import Effect

@@ -11,10 +11,11 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis import gather
 from hdrive_mbs.diagnosis.deadline import Deadline
-from hdrive_mbs.diagnosis.diagnose import diagnose, factors_of
+from hdrive_mbs.diagnosis.diagnose import diagnose
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.nominal_again import nominal_again
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.search import Search, fit_nominal
 from hdrive_mbs.diagnosis.search import search as search_
 from hdrive_mbs.diagnosis.simulator import Simulator

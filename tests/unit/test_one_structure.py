@@ -10,8 +10,8 @@ from hdrive_mbs.compiled.idle_coordinates import without_idle
 from hdrive_mbs.compiled.line import CompiledLine
 from hdrive_mbs.diagnosis.bench import Bench
 from hdrive_mbs.diagnosis.candidates import Candidate, candidates
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.effects.shaft_bending import bent_shapes
 from hdrive_mbs.network.bearing_draft import ShaftPiece
 from hdrive_mbs.shafts.beam import Beam

@@ -12,11 +12,11 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.other_starts import LAWS, MOST, farthest, from_other_starts, going_on, others
 from hdrive_mbs.diagnosis.periods import Periods
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.search import Depth, _Work, is_inexact
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, Suspect, suspects

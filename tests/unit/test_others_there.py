@@ -11,10 +11,10 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.candidates import candidates
 from hdrive_mbs.diagnosis.choosing import above_noise
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.from_the_best import others_there
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import PARAMETER, suspects
 from hdrive_mbs.diagnosis.tasks import RIVAL, Found

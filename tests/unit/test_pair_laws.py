@@ -6,11 +6,11 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.from_the_best import with_choices
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.pair_laws import told_otherwise, with_other_laws
 from hdrive_mbs.diagnosis.pairs import contenders
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import suspects
 from hdrive_mbs.diagnosis.team import Team

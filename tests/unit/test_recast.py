@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.pairs import contenders
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.recast import recast
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import suspects

@@ -10,12 +10,12 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.bench import Bench
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.digest import digest
 from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.measured import Measured
 from hdrive_mbs.diagnosis.noise import Free, Whitener
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.ringing import LOWEST, POWERS, Ringing, ringing_words
 from hdrive_mbs.diagnosis.search import fit_nominal
 from hdrive_mbs.diagnosis.simulator import Simulator

@@ -11,10 +11,10 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.analysis.run_up.run_up import RunUp
 from hdrive_mbs.diagnosis.bench import Bench, Uncertain
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
 from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.records.measurement import Measurement

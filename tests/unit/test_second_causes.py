@@ -10,10 +10,10 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis import second_cause
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.nearly import nearly_right
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.screening import Look
 from hdrive_mbs.diagnosis.search import Search, cheapest_looks
 from hdrive_mbs.diagnosis.simulator import Simulator

@@ -11,10 +11,10 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.compiled.line import CompiledLine
 from hdrive_mbs.diagnosis.candidates import Candidate, candidates
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
 from hdrive_mbs.diagnosis.lines import Lines
 from hdrive_mbs.diagnosis.measured import Measured
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.templates import Templates, alike
 from hdrive_mbs.diagnosis.trial import Trial
 from hdrive_mbs.effects.effect import TorqueEffect

@@ -8,8 +8,8 @@ import pytest
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import fit
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.search import fit_nominal
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import suspects

@@ -10,9 +10,9 @@ import pytest
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis import gather, together
 from hdrive_mbs.diagnosis import search as searching
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.search import Search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import Suspect

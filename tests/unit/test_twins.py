@@ -12,10 +12,10 @@ import hdrive_mbs as hm
 from hdrive_mbs.compiled.line import CompiledLine
 from hdrive_mbs.diagnosis import from_the_best
 from hdrive_mbs.diagnosis.candidates import candidates
-from hdrive_mbs.diagnosis.diagnose import factors_of
 from hdrive_mbs.diagnosis.fit import Fitted, fit
 from hdrive_mbs.diagnosis.from_the_best import twins
 from hdrive_mbs.diagnosis.hypothesis import Added, Hypothesis
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.search import _Work, search
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import Suspect, suspects

@@ -10,9 +10,10 @@ import pytest
 
 from hdrive_mbs.diagnosis import diagnose as diagnosing
 from hdrive_mbs.diagnosis import verify
-from hdrive_mbs.diagnosis.diagnose import _on_the_engine, factors_of
+from hdrive_mbs.diagnosis.diagnose import _on_the_engine
 from hdrive_mbs.diagnosis.fit import fit
 from hdrive_mbs.diagnosis.hypothesis import Hypothesis
+from hdrive_mbs.diagnosis.prepared import factors_of
 from hdrive_mbs.diagnosis.simulator import Simulator
 from hdrive_mbs.diagnosis.suspects import Suspect
 from hdrive_mbs.diagnosis.tasks import Found
