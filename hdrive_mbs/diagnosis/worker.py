@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import importlib
 import traceback
 from dataclasses import dataclass
 from multiprocessing import connection
@@ -18,6 +19,9 @@ from hdrive_mbs.diagnosis.refusals import taken
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.freed_memory import give_back
 from hdrive_mbs.worker_process import READY, WorkerProcess, work_for_parent
+
+AT_WORK = ("hdrive_mbs.diagnosis.gather", "scipy.signal")
+"""What nearly all work needs: a process reads it while it stands by."""
 
 
 def threads_of_each() -> ctypes.c_int:
@@ -61,6 +65,8 @@ def _work(pipe: connection.Connection, threads: ctypes.c_int) -> None:
     known: dict[str, Any] = {}
     with contextlib.suppress(EOFError, OSError), allowed(lambda: threads.value):
         pipe.send((True, READY, {}))
+        for name in AT_WORK:
+            importlib.import_module(name)
         while True:
             path, data = pipe.recv()
             try:
