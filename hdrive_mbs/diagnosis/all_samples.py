@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from hdrive_mbs.diagnosis.alone_again import alone_again, run_from_less
 from hdrive_mbs.diagnosis.choosing import SEEN, beyond
 from hdrive_mbs.diagnosis.fit import Fitted
 from hdrive_mbs.diagnosis.from_its_values import from_its_values
@@ -112,8 +111,7 @@ def _from_reserve(
 
 
 def _levelled(team: Team, fine: Simulator, fits: Mapping[int, Fitted | None], brief: Collection[int]) -> dict[int, Fitted]:
-    """The fits, the best one to its end, and others with its laws, or with some of its causes, from its values where they come down farther
-    from there than they had.
+    """The fits, the best one to its end, and others with its laws from its values where they come down farther from there than they had.
 
     Again where one of these is the best then.
 
@@ -124,10 +122,9 @@ def _levelled(team: Team, fine: Simulator, fits: Mapping[int, Fitted | None], br
         best = min(ran, key=lambda number: ran[number].cost)
         if best in brief and not ran[best].converged:
             ran[best] = run_task(fine, further(ran[best], LONG, EXACT)) or ran[best]
-        work: dict[int, Work] = {k: partial(run_task, task=task) for k, task in from_its_values(ran, LONG, EXACT).items()}
-        work |= {k: partial(run_from_less, task=task, cost=ran[k].cost) for k, task in alone_again(ran, LONG, EXACT).items()}
-        found = team.map(_done, fine, list(work.values()))
-        ran |= {k: item for k, item in zip(work, found, strict=True) if item is not None and item.cost < ran[k].cost}
+        tasks = from_its_values(ran, LONG, EXACT)
+        found = team.map(_done, fine, [partial(run_task, task=task) for task in tasks.values()])
+        ran |= {k: item for k, item in zip(tasks, found, strict=True) if item is not None and item.cost < ran[k].cost}
         if min(ran, key=lambda number: ran[number].cost) == best:
             break
     return ran

@@ -108,7 +108,7 @@ def fit(
     mask = simulator.fit
     noise = 0.5 * int(np.count_nonzero(mask))
 
-    cost = cost_of(simulator, hypothesis, residuals, z)
+    cost = _cost(simulator, hypothesis, residuals, z)
     history = [cost]
     damping, converged, done = 1.0, len(z) == 0, 0  # nothing to search: it is there
     curvature = np.zeros((len(z), len(z)))
@@ -221,7 +221,7 @@ def mend(columns: FloatArray, change: FloatArray, move: FloatArray, scale: Float
         columns[:, k] += part * missed
 
 
-def cost_of(simulator: Simulator, hypothesis: Hypothesis, residuals: FloatArray | None, z: FloatArray) -> float:
+def _cost(simulator: Simulator, hypothesis: Hypothesis, residuals: FloatArray | None, z: FloatArray) -> float:
     """Misfit of the fitted samples and priors; infinite where a point could not be run."""
     return math.inf if residuals is None else simulator.blocks.cost(residuals[simulator.fit]) + hypothesis.prior_cost(z)
 
@@ -229,7 +229,7 @@ def cost_of(simulator: Simulator, hypothesis: Hypothesis, residuals: FloatArray 
 def _run(simulator: Simulator, hypothesis: Hypothesis, points: list[FloatArray]) -> list[tuple[FloatArray | None, float]]:
     """Residuals and costs of points."""
     runs = simulator.residuals(hypothesis, points)
-    return [(item, cost_of(simulator, hypothesis, item, point)) for item, point in zip(runs, points, strict=True)]
+    return [(item, _cost(simulator, hypothesis, item, point)) for item, point in zip(runs, points, strict=True)]
 
 
 def _tried(
@@ -242,7 +242,7 @@ def _tried(
     for some in (points[:1], points[1:]):
         runs = simulator.residuals(hypothesis, [point for point, _ in some])
         found += runs
-        costs += [cost_of(simulator, hypothesis, item, point) for item, (point, _) in zip(runs, some, strict=True)]
+        costs += [_cost(simulator, hypothesis, item, point) for item, (point, _) in zip(runs, some, strict=True)]
         kept = (cost - costs[0]) / max(promised, TINY)
         if kept > AS_PROMISED:
             break
