@@ -128,7 +128,7 @@ def _places(kind: type[Effect], network: Network) -> tuple[str, ...]:
 
 
 def _fits(scene: Scene, item: Added, known: dict[str, bool]) -> bool:
-    """Whether an effect can be put there at all;  known : what is known of others at this place, by their text, which takes this one up."""
+    """As ``_goes_there``;  known : answers for effects at this place, by their text, which takes this one up."""
     key = repr(item.effect)
     if key not in known:
         known[key] = _goes_there(scene, item)
@@ -136,6 +136,7 @@ def _fits(scene: Scene, item: Added, known: dict[str, bool]) -> bool:
 
 
 def _goes_there(scene: Scene, item: Added) -> bool:
+    """Whether an effect can be put there at all."""
     try:
         scene.with_effect(item.effect, at=item.at)
     except HdriveError:

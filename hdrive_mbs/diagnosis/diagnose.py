@@ -90,12 +90,12 @@ def diagnose(
     aside = (held_out,) if isinstance(held_out, str) else tuple(held_out)
     others_run = (workers or 1) > 1
     with Team(workers or 1, deadline=deadline) as team:
-        team.stand_by()  # while the records are checked
+        team.stand_by(gather.__module__, "scipy.signal")  # while the records are checked
         given = prepare(bench, chosen, candidates, step, aside)
         team.journal = None if folder is None else Journal(folder, given.inputs)
         if others_run:
             given.coarse.forget()
-            let_go()  # what finding a step took, which the search does not need here
+            let_go()  # what finding a step took, which the processes do not need from here
         give_back()
         evidence = gather(given.coarse, given.fine, given.factors, given.bench.groups, given.candidates, team, report)
         claim, best = _concluded(evidence)

@@ -66,10 +66,10 @@ class Team:
         if self._folder is not None:
             self._folder.cleanup()
 
-    def stand_by(self) -> None:
-        """Begin the processes, if there are to be several, before there is work: they read this package meanwhile."""
+    def stand_by(self, *needed: str) -> None:
+        """Begin the processes, if there are to be several, before there is work;  needed : modules that they read meanwhile."""
         if self._folder is not None:
-            self._fill()
+            self._fill(needed)
 
     def dismiss(self, patience: float = PATIENCE) -> None:
         """End the processes, which have no items, and with them what they keep; another map begins new ones."""
@@ -182,9 +182,9 @@ class Team:
         assert self.journal is not None
         return self.journal.key(later.function, self.journal.identity(later.shared), later.item)
 
-    def _fill(self) -> None:
+    def _fill(self, needed: Sequence[str] = ()) -> None:
         while len(self._running) < self.workers:
-            self._running.append(Worker.begun(self._threads))
+            self._running.append(Worker.begun(self._threads, needed))
 
     def _shared(self, shared: Any) -> Path:
         """A file with what items share."""

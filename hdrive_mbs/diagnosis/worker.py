@@ -6,6 +6,7 @@ import contextlib
 import ctypes
 import importlib
 import traceback
+from collections.abc import Sequence
 from dataclasses import dataclass
 from multiprocessing import connection
 from multiprocessing.context import SpawnContext
@@ -19,9 +20,6 @@ from hdrive_mbs.diagnosis.refusals import taken
 from hdrive_mbs.errors import AnalysisError
 from hdrive_mbs.freed_memory import give_back
 from hdrive_mbs.worker_process import READY, WorkerProcess, work_for_parent
-
-AT_WORK = ("hdrive_mbs.diagnosis.gather", "scipy.signal")
-"""What nearly all work needs: a process reads it while it stands by."""
 
 
 def threads_of_each() -> ctypes.c_int:
@@ -38,9 +36,12 @@ class Worker(WorkerProcess):
     ready: bool = False
 
     @classmethod
-    def begun(cls, threads: ctypes.c_int) -> Worker:
-        """A new process; it says READY once it has read this package."""
-        return cls.start(_work, threads, name="diagnosis worker")
+    def begun(cls, threads: ctypes.c_int, needed: Sequence[str] = ()) -> Worker:
+        """A new process; it says READY once it can take work.
+
+        needed : modules that it reads then, while it has none
+        """
+        return cls.start(_work, threads, tuple(needed), name="diagnosis worker")
 
     @property
     def is_busy(self) -> bool:
@@ -59,13 +60,13 @@ class Worker(WorkerProcess):
         self.send((str(later.file), data))
 
 
-def _work(pipe: connection.Connection, threads: ctypes.c_int) -> None:
+def _work(pipe: connection.Connection, threads: ctypes.c_int, needed: Sequence[str]) -> None:
     """Answer items until the pipe is closed: (True, answer, refused) or (False, error with the lines where it arose, refused)."""
     work_for_parent()
     known: dict[str, Any] = {}
     with contextlib.suppress(EOFError, OSError), allowed(lambda: threads.value):
         pipe.send((True, READY, {}))
-        for name in AT_WORK:
+        for name in needed:
             importlib.import_module(name)
         while True:
             path, data = pipe.recv()
