@@ -8,11 +8,8 @@ second cause within one diagnosis, a further one has to be far more probable tha
 from __future__ import annotations
 
 import dataclasses
-import importlib
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import hdrive_mbs as hm
 from hdrive_mbs.diagnosis.bench import Bench, Uncertain
@@ -24,6 +21,8 @@ from hdrive_mbs.records.record import Record
 
 ACCEPTED = 0.5
 """Standard deviation of the logarithm of an accepted strength in later rounds."""
+EVERY = 1
+"""The search compares all samples: these records have a few hundred, thinned to what is independent already."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -46,8 +45,7 @@ def rounds(bench: Bench, records: Sequence[Record], laws: Iterable[type[hm.Effec
     found: list[Round] = []
     for number in range(most):
         seen: list[Evidence] = []
-        with _every_sample():
-            answer = diagnose(bench, records, candidates=tried, workers=1, step=step, pictures=False, watch=seen.append)
+        answer = diagnose(bench, records, candidates=tried, workers=1, step=step, every=EVERY, pictures=False, watch=seen.append)
         null = seen[0].null
         effects = [cause for cause in answer.causes if cause.kind != "parameter"]
         accepted = bool(effects) and (number == 0 or effects[0].log_odds > SECOND)
@@ -56,18 +54,6 @@ def rounds(bench: Bench, records: Sequence[Record], laws: Iterable[type[hm.Effec
             break
         bench = accepting(bench, answer)
     return found
-
-
-@contextmanager
-def _every_sample() -> Iterator[None]:
-    """Let the search compare all samples: these records have a few hundred, thinned to what is independent already."""
-    method: Any = importlib.import_module("hdrive_mbs.diagnosis.diagnose")
-    before = method.EVERY
-    method.EVERY = 1
-    try:
-        yield
-    finally:
-        method.EVERY = before
 
 
 def accepting(bench: Bench, answer: Diagnosis) -> Bench:

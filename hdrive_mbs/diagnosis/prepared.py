@@ -22,11 +22,12 @@ from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.whole_records import split_up
 from hdrive_mbs.effects.effect import Effect
+from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.records.record import Record
 from hdrive_mbs.scene import Scene
 
 EVERY = 4
-"""Samples from one to the next that the search compares; the last fits take all."""
+"""Samples from one to the next that the search compares if nothing else is asked for; the last fits take all."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -34,7 +35,8 @@ class Prepared:
     """What is known before anything is fitted.
 
     records : with columns as the bench names them;  candidates : what may be missing;  factors : uncertain parameters
-    step : of the last fits [s];  pace : steps of the search;  coarse, fine : the records for the search, and for the last fits
+    step : of the last fits [s];  pace : steps of the search;  every : of so many samples the search compares one
+    coarse, fine : the records for the search, and for the last fits
     searched : names of records of which the search sees something;  held_out : names of those that no fit sees
     warnings : of records and inputs;  notes : what was repaired in records
     """
@@ -45,6 +47,7 @@ class Prepared:
     factors: tuple[Factor, ...]
     step: float
     pace: Pace
+    every: int
     coarse: Simulator
     fine: Simulator
     searched: tuple[str, ...]
@@ -56,7 +59,7 @@ class Prepared:
     def inputs(self) -> Mapping[str, Any]:
         """What the results depend on."""
         steps = self.step, self.pace.steps, len(self.pace.slowed)
-        trials = self.fine.trials, self.factors, self.bench.groups, *steps, EVERY
+        trials = self.fine.trials, self.factors, self.bench.groups, *steps, self.every
         return {"records": self.records, "bench": self.bench, "candidates": self.candidates, "trials": trials}
 
     @property
@@ -66,7 +69,7 @@ class Prepared:
             "step": self.step,
             "steps_of_search": dict(zip([trial.name for trial in self.coarse.trials], self.pace.steps, strict=True)),
             "slowed_in_search": len(self.pace.slowed),
-            "every": EVERY,
+            "every": self.every,
             "candidates": [f"{item.kind.__name__}@{item.at}" for item in self.candidates],
             "searched": list(self.searched),
             "held_out": list(self.held_out),
@@ -79,12 +82,15 @@ def prepare(
     candidates: Iterable[type[Effect]] | type[Effect] | None = None,
     step: float | None = None,
     held_out: Sequence[str] = (),
+    every: int = EVERY,
 ) -> Prepared:
     """Records held against their bench, and what is needed to fit them; arguments as for ``diagnose``.
 
-    Raises RecordError for records that do not fit the bench, ParameterError for a bad candidate or time, PlaceError for the name of a
-    record that there is not, AnalysisError where the nominal model cannot be simulated.
+    Raises RecordError for records that do not fit the bench, ParameterError for a bad candidate, time or ``every``, PlaceError for the
+    name of a record that there is not, AnalysisError where the nominal model cannot be simulated.
     """
+    if isinstance(every, bool) or not isinstance(every, int) or every < 1:
+        raise ParameterError(f"diagnose: every = {every!r} must be a whole number of samples, at least 1 (all of them).")
     known = bench if isinstance(bench, Bench) else assumed_bench(bench, records)
     chosen = tuple(as_the_bench_names_them(known, record) for record in records)
     check_records(known, chosen)
@@ -97,10 +103,10 @@ def prepare(
         pace = pace_of(searched, factors, step)
     else:
         pace = Pace((step,) * len(searched))
-    coarse, fine = Simulator(searched, pace.steps, EVERY, slowed=pace.slowed, shortest=pace.shortest), Simulator(trials, step)
+    coarse, fine = Simulator(searched, pace.steps, every, slowed=pace.slowed, shortest=pace.shortest), Simulator(trials, step)
     check_trials(coarse, factors)
     if held_out:
-        check_trials(Simulator([trial for trial in trials if trial.held_out.all()], step, EVERY), factors, fitted=False)
+        check_trials(Simulator([trial for trial in trials if trial.held_out.all()], step, every), factors, fitted=False)
     changed, reported = record_words(chosen)
     warnings = (
         *changed,
@@ -117,6 +123,7 @@ def prepare(
         factors=factors,
         step=step,
         pace=pace,
+        every=every,
         coarse=coarse,
         fine=fine,
         searched=tuple(name for name, own in trials_of.items() if any(trial in searched for trial in own)),
