@@ -64,6 +64,7 @@ class CaseDiagnosis:
     only : classes or families of effects that are tried; all if empty
     reading : how records are read;  program : hash of the program, so that another one makes another job
     work : folder in which fits are kept while a case is not finished; not used by a worker that does not see it
+    every : of so many samples the search compares one
     search_seconds : after which the search of a case looks for no more [s]
     """
 
@@ -73,6 +74,7 @@ class CaseDiagnosis:
     reading: Mapping[str, Any]
     program: str
     work: str
+    every: int | None = None
     search_seconds: float | None = None
 
     def __call__(self, point: Mapping[str, Any]) -> dict[str, Any]:
@@ -88,7 +90,8 @@ class CaseDiagnosis:
         from hdrive_mbs.diagnosis.diagnose import diagnose as run
 
         kept = Path(self.work) / str(point["case"]) if Path(self.work).is_dir() else None
-        result = run(bench, measured, candidates=_living(kinds), workers=1, folder=kept, search_seconds=self.search_seconds)
+        found = _living(kinds)
+        result = run(bench, measured, candidates=found, workers=1, folder=kept, every=self.every, search_seconds=self.search_seconds)
         return {**figures(result), "report": report_files(result)}
 
     def made_of(self) -> tuple[Scene, dict[str, Any]]:
@@ -98,6 +101,7 @@ class CaseDiagnosis:
             "only": self.only,
             "reading": dict(self.reading),
             "program": self.program,
+            "every": self.every,
             "search_seconds": self.search_seconds,
         }
         if isinstance(self.bench, Scene):

@@ -21,6 +21,7 @@ from hdrive_mbs.cli.python_file import imported, lines_named, own_types
 from hdrive_mbs.cli.records_options import (
     BenchFile,
     Channels,
+    Every,
     HeldOut,
     Only,
     OwnEffects,
@@ -60,6 +61,7 @@ def diagnose(
     time: TimeColumn = None,
     repair: Repairs = None,
     held_out: HeldOut = None,
+    every: Every = None,
     workers: Annotated[int | None, typer.Option(help="Processes on this machine; 2 where it has two cores.")] = None,
     search_seconds: SearchSeconds = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with an interrupted diagnosis in --out.")] = False,
@@ -74,7 +76,8 @@ def diagnose(
     measured = measured_in(paths, reading, chosen)
     name = chosen.name if isinstance(chosen, Scene) else chosen.scene.name
     folder = out or Path("results") / re.sub(r"\W+", "_", f"diagnosis {name}")
-    work = _begin(folder / WORK, _job(scene, measured, effects or (), only or (), reading, held_out or ()), resume)
+    job = _job(scene, measured, effects or (), only or (), reading=dict(reading), held_out=sorted(held_out or ()), every=every)
+    work = _begin(folder / WORK, job, resume)
     from hdrive_mbs.diagnosis.diagnose import diagnose as run
 
     try:
@@ -86,6 +89,7 @@ def diagnose(
                 candidates=kinds,
                 workers=cores,
                 folder=work,
+                every=every,
                 held_out=held_out or (),
                 search_seconds=search_seconds,
                 report=report,
@@ -217,17 +221,17 @@ def _unmapped(bench: Bench, mapped: Collection[str]) -> Iterator[str]:
             yield name
 
 
-def _job(
-    scene: Path, records: Records, effects: Sequence[Path], only: Sequence[str], reading: Mapping[str, Any], held_out: Sequence[str]
-) -> dict[str, Any]:
-    """What is diagnosed, so that only the same is gone on with."""
+def _job(scene: Path, records: Records, effects: Sequence[Path], only: Sequence[str], **options: Any) -> dict[str, Any]:
+    """What is diagnosed, so that only the same is gone on with.
+
+    options : that choose or read records, as plain data
+    """
     files = {"scene": scene, **{f"effects {path.name}": path for path in effects}}
     return {
         "files": {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in files.items()},
         "records": {record.name: record.sha256 for record in records},
         "only": sorted(only),
-        "reading": dict(reading),
-        "held_out": sorted(held_out),
+        **options,
     }
 
 
@@ -248,7 +252,7 @@ def _begin(work: Path, job: Mapping[str, Any], resume: bool) -> Path:
             same = False
         if not same:
             raise FileFormatError(
-                f"{work} holds a diagnosis of another scene, other records or other effects (or they have changed since):"
+                f"{work} holds a diagnosis of another scene, other records, effects or options (or they have changed since):"
                 " delete that folder, or choose another --out."
             )
         return work

@@ -14,7 +14,18 @@ from hdrive_mbs.cli.case_diagnosis import CaseDiagnosis, GivenFile, cases_in, co
 from hdrive_mbs.cli.diagnose import WORK, open_bench, tried
 from hdrive_mbs.cli.options import ExportFiles, JsonFile
 from hdrive_mbs.cli.output import print_table, write_exports, write_json
-from hdrive_mbs.cli.records_options import BenchFile, Channels, Only, OwnEffects, Repairs, SearchSeconds, TimeColumn, Units, reading_of
+from hdrive_mbs.cli.records_options import (
+    BenchFile,
+    Channels,
+    Every,
+    Only,
+    OwnEffects,
+    Repairs,
+    SearchSeconds,
+    TimeColumn,
+    Units,
+    reading_of,
+)
 from hdrive_mbs.cli.sweep import cell, tell_failures
 from hdrive_mbs.scene import Scene
 from hdrive_mbs.writing import write_bytes, write_text
@@ -41,6 +52,7 @@ def diagnose_all(
     unit: Units = None,
     time: TimeColumn = None,
     repair: Repairs = None,
+    every: Every = None,
     workers: Annotated[int | None, typer.Option(help="Cases side by side, a process each; as many as the machine has cores.")] = None,
     search_seconds: SearchSeconds = None,
     scheduler: Annotated[
@@ -69,6 +81,7 @@ def diagnose_all(
         reading=reading,
         program=program(),
         work=str(work),
+        every=every,
         search_seconds=search_seconds,
     )
     points = [{"case": name, "records": str(path), "sha256": content_hash(record_files(path))} for name, path in cases.items()]

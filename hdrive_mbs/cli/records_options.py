@@ -32,6 +32,10 @@ HeldOut = Annotated[
     list[str] | None,
     typer.Option("--held-out", metavar="RECORD", help="A record that no fit sees, for the gap (several times); else a quarter of each."),
 ]
+Every = Annotated[
+    int | None,
+    typer.Option(metavar="N", min=1, help="Of so many samples the search compares one (4); 1 for records that are sparse already."),
+]
 SearchSeconds = Annotated[
     float | None,
     typer.Option(

@@ -27,7 +27,7 @@ from hdrive_mbs.diagnosis.gap import gaps
 from hdrive_mbs.diagnosis.gather import Evidence, gather
 from hdrive_mbs.diagnosis.journal import Journal
 from hdrive_mbs.diagnosis.pictures import pictures_of
-from hdrive_mbs.diagnosis.prepared import EVERY, prepare
+from hdrive_mbs.diagnosis.prepared import prepare
 from hdrive_mbs.diagnosis.refusals import refused_words
 from hdrive_mbs.diagnosis.result import Cause, Diagnosis
 from hdrive_mbs.diagnosis.ringing import ringing_words
@@ -56,7 +56,7 @@ def diagnose(
     workers: int | None = None,
     folder: str | Path | None = None,
     step: float | None = None,
-    every: int = EVERY,
+    every: int | None = None,
     held_out: Sequence[str] | str = (),
     report: Report | None = None,
     search_seconds: float | None = None,
@@ -74,7 +74,7 @@ def diagnose(
     folder : where fits are kept, so that an interrupted diagnosis goes on from there
     step : of the integration [s], chosen if not given (``suitable_step``, and longer ones for the search on rotor lines, ``pace_of``);
         what grows with it is run again with half of it
-    every : of so many samples the search compares one, and the last fits all; 1 for records that are sparse already
+    every : of so many samples the search compares one, and the last fits all; 4 if not given, 1 for records that are sparse already
     held_out : names of records that neither a fit nor the localisation may see, on which the gap is then measured, and which the
         verdict asks whether a claim holds there too; if not given, a quarter of every record, in stretches
     search_seconds : after which the search looks for no more where what it has found leaves something [s]; no end if not given.  What

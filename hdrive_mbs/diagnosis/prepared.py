@@ -82,14 +82,16 @@ def prepare(
     candidates: Iterable[type[Effect]] | type[Effect] | None = None,
     step: float | None = None,
     held_out: Sequence[str] = (),
-    every: int = EVERY,
+    every: int | None = None,
 ) -> Prepared:
     """Records held against their bench, and what is needed to fit them; arguments as for ``diagnose``.
 
     Raises RecordError for records that do not fit the bench, ParameterError for a bad candidate, time or ``every``, PlaceError for the
     name of a record that there is not, AnalysisError where the nominal model cannot be simulated.
     """
-    if isinstance(every, bool) or not isinstance(every, int) or every < 1:
+    if every is None:
+        every = EVERY
+    elif isinstance(every, bool) or not isinstance(every, int) or every < 1:
         raise ParameterError(f"diagnose: every = {every!r} must be a whole number of samples, at least 1 (all of them).")
     known = bench if isinstance(bench, Bench) else assumed_bench(bench, records)
     chosen = tuple(as_the_bench_names_them(known, record) for record in records)

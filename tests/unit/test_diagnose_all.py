@@ -45,7 +45,7 @@ from models.drive_bench import build
 from tests.unit.diagnosis_samples import SAMPLES
 
 
-def quick(bench, records, *, candidates, workers, folder, search_seconds):
+def quick(bench, records, *, candidates, workers, folder, every, search_seconds):
     """Says that it works, keeps a fit, takes its time, and answers."""
     before = folder is not None and (folder / "fit").exists()
     if folder is not None:
@@ -308,7 +308,7 @@ def test_the_scene_of_a_scene_file_is_sent_itself(tmp_path: Path, monkeypatch: p
     calls: list[Any] = []
 
     def quick(bench: Any, records: Any, **options: Any) -> Any:
-        calls.append((bench, options["search_seconds"]))
+        calls.append((bench, options["search_seconds"], options["every"]))
         return SAMPLES["without_pictures"]()
 
     def at_once(task: Any, points: Any, *, arrived: Any, **options: Any) -> Any:
@@ -320,11 +320,12 @@ def test_the_scene_of_a_scene_file_is_sent_itself(tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(search, "diagnose", quick)
     monkeypatch.setattr(sweeping, "sweep", at_once)
     words = (str(file), "--records", str(cases(tmp_path / "set", "a")), "--out", str(tmp_path / "out"))
-    assert invoke(*words, "--search-seconds", "30").exit_code == 0
-    assert calls == [(drive_bench.build(), 30.0)]
+    assert invoke(*words, "--search-seconds", "30", "--every", "1").exit_code == 0
+    assert calls == [(drive_bench.build(), 30.0, 1)]
     (job,) = (tmp_path / "out" / "jobs").glob("*.npz")
     told = FinishedJob.load(job).settings
     assert told["function"] == "CaseDiagnosis"
     assert told["fingerprint"]
     assert told["search_seconds"] == 30.0
+    assert told["every"] == 1
     assert "bench" not in told, "it is the scene itself"

@@ -129,7 +129,19 @@ def refused(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
 def test_report_is_printed_and_everything_is_written(asked: list[dict[str, Any]], tmp_path: Path) -> None:
     scene, file, out = written(tmp_path, BENCH), record(tmp_path, "a.csv"), tmp_path / "out"
     done = invoke(
-        scene, "--records", file, "--out", str(out), "--json", str(tmp_path / "d.json"), "--workers", "2", "--search-seconds", "90"
+        scene,
+        "--records",
+        file,
+        "--out",
+        str(out),
+        "--json",
+        str(tmp_path / "d.json"),
+        "--workers",
+        "2",
+        "--search-seconds",
+        "90",
+        "--every",
+        "2",
     )
     assert done.exit_code == 0
     answer = SAMPLES["without_pictures"]()
@@ -145,6 +157,7 @@ def test_report_is_printed_and_everything_is_written(asked: list[dict[str, Any]]
     assert isinstance(asked[0]["bench"], Bench)
     assert asked[0]["workers"] == 2
     assert asked[0]["search_seconds"] == 90.0
+    assert asked[0]["every"] == 2
     assert asked[0]["candidates"] is None
 
 
@@ -377,6 +390,7 @@ def test_an_interrupted_diagnosis_is_kept_and_gone_on_with(
     assert (out / "work" / "fit_1").read_text() == "kept"
 
     record(tmp_path, "a.csv")
+    assert "effects or options" in refused(capsys, monkeypatch, *words, "--resume", "--every", "2")
     monkeypatch.setattr(search, "diagnose", answers)
     assert invoke(*words, "--resume").exit_code == 0
     assert asked[0]["folder"] == out / "work"
