@@ -7,7 +7,7 @@ What is wrong with a record alone (gaps, saturated or stuck channels, contradict
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -111,6 +111,25 @@ def _unit_of_law(law: Any, values: tuple[float, ...]) -> str:
         if quantity is not None and value == values:
             return quantity.unit
     return ""
+
+
+def checked_every(every: object, searched: Iterable[Trial]) -> int:
+    """Of so many samples the search compares one, as a plain number.
+
+    Raises ParameterError for what is no whole number from 1 on, or leaves less of a record than a fit needs.
+    """
+    if isinstance(every, bool) or not isinstance(every, (int, np.integer)) or every < 1:
+        raise ParameterError(f"diagnose: every = {every!r} must be a whole number of samples, at least 1 (all of them).")
+    for trial in searched:
+        for column, values in trial.columns.items():
+            there = np.isfinite(values) & ~trial.held_out
+            seen = int(there[::every].sum())
+            if seen < min(LEAST, int(there.sum())):
+                raise ParameterError(
+                    f"diagnose: every = {every} leaves a search {seen} values of {column!r} in record {trial.name!r}; needed are {LEAST}."
+                    " Choose less, down to 1 for all."
+                )
+    return int(every)
 
 
 def check_trials(simulator: Simulator, factors: Sequence[Factor], *, fitted: bool = True) -> None:

@@ -13,7 +13,7 @@ from hdrive_mbs.diagnosis.candidates import Candidate
 from hdrive_mbs.diagnosis.candidates import candidates as all_candidates
 from hdrive_mbs.diagnosis.column_names import as_the_bench_names_them
 from hdrive_mbs.diagnosis.drive_scale_checks import drives_scaled
-from hdrive_mbs.diagnosis.input_checks import check_records, check_trials, not_compared, not_driven
+from hdrive_mbs.diagnosis.input_checks import check_records, check_trials, checked_every, not_compared, not_driven
 from hdrive_mbs.diagnosis.pace import Pace, pace_of
 from hdrive_mbs.diagnosis.record_words import record_words
 from hdrive_mbs.diagnosis.scale_checks import looks_scaled
@@ -22,7 +22,6 @@ from hdrive_mbs.diagnosis.step import suitable_step
 from hdrive_mbs.diagnosis.unknowns import Factor
 from hdrive_mbs.diagnosis.whole_records import split_up
 from hdrive_mbs.effects.effect import Effect
-from hdrive_mbs.errors import ParameterError
 from hdrive_mbs.records.record import Record
 from hdrive_mbs.scene import Scene
 
@@ -89,15 +88,12 @@ def prepare(
     Raises RecordError for records that do not fit the bench, ParameterError for a bad candidate, time or ``every``, PlaceError for the
     name of a record that there is not, AnalysisError where the nominal model cannot be simulated.
     """
-    if every is None:
-        every = EVERY
-    elif isinstance(every, bool) or not isinstance(every, int) or every < 1:
-        raise ParameterError(f"diagnose: every = {every!r} must be a whole number of samples, at least 1 (all of them).")
     known = bench if isinstance(bench, Bench) else assumed_bench(bench, records)
     chosen = tuple(as_the_bench_names_them(known, record) for record in records)
     check_records(known, chosen)
     trials_of = {record.name: known.trials(record) for record in chosen}
     searched, trials = split_up(trials_of, known.searched, held_out)
+    every = EVERY if every is None else checked_every(every, searched)
     factors = factors_of(known)
     tried = all_candidates(trials[0].scene, candidates)
     if step is None:

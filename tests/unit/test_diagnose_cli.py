@@ -128,21 +128,8 @@ def refused(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
 
 def test_report_is_printed_and_everything_is_written(asked: list[dict[str, Any]], tmp_path: Path) -> None:
     scene, file, out = written(tmp_path, BENCH), record(tmp_path, "a.csv"), tmp_path / "out"
-    done = invoke(
-        scene,
-        "--records",
-        file,
-        "--out",
-        str(out),
-        "--json",
-        str(tmp_path / "d.json"),
-        "--workers",
-        "2",
-        "--search-seconds",
-        "90",
-        "--every",
-        "2",
-    )
+    options = ("--workers", "2", "--search-seconds", "90", "--every", "2")
+    done = invoke(scene, "--records", file, "--out", str(out), "--json", str(tmp_path / "d.json"), *options)
     assert done.exit_code == 0
     answer = SAMPLES["without_pictures"]()
     expected = report_text(answer)

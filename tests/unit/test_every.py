@@ -38,8 +38,8 @@ def test_the_search_compares_as_many_samples_as_asked_for() -> None:
 
 
 def test_a_diagnosis_says_how_many_it_compared() -> None:
-    found = diagnose(bench(), quiet(), candidates=(ViscousDrag,), pictures=False, step=STEP, every=2)
-    assert found.settings["every"] == 2
+    found = diagnose(bench(), quiet(), candidates=(ViscousDrag,), pictures=False, step=STEP, every=np.int64(2))
+    assert repr(found.settings["every"]) == "2"  # a plain number, which JSON takes
     assert found.verdict == "none"
 
 
@@ -47,3 +47,12 @@ def test_a_diagnosis_says_how_many_it_compared() -> None:
 def test_what_is_no_number_of_samples_is_refused(every: Any) -> None:
     with pytest.raises(hm.ParameterError, match=r"every = .* must be a whole number of samples, at least 1"):
         diagnose(bench(), quiet(), every=every)
+
+
+def test_a_search_that_would_see_next_to_nothing_is_refused() -> None:
+    shortest = min(len(record.times) for record in quiet())
+    assert samples_of_the_search(prepare(bench(), quiet(), (), STEP, every=shortest // 32)) > 0
+    with pytest.raises(
+        hm.ParameterError, match=rf"every = {shortest // 8} leaves a search \d+ values of '.+' in record '.+'; needed are 16"
+    ):
+        diagnose(bench(), quiet(), every=shortest // 8)
